@@ -1,4 +1,4 @@
-// ByteTable: numbers of keys that are strings of bytes. Keys lie one behind the other in memory of
+// ByteTable: numbers of keys that are strings of bytes. Keys lie one after the other in memory of
 // the table, so that a new one takes no memory of its own, and clear() keeps what there is.
 #pragma once
 

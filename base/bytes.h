@@ -64,7 +64,7 @@ class ByteWriter {
     bytes_.resize(std::max({kFirst, size_ + count, bytes_.size() + bytes_.size() / 2}));
   }
 
-  Bytes bytes_;      // what was written, and room behind it
+  Bytes bytes_;      // what was written, and room after it
   size_t size_ = 0;  // written
 };
 

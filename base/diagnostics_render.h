@@ -33,7 +33,7 @@ struct RefusedRun {
 struct RunFacts {
   std::string_view version = "0";       // of the compiler
   std::string_view root = {};           // SARIF: paths below this folder are relative to it
-  std::string_view documentation = {};  // SARIF: where pages of codes are, "/E3001" behind it
+  std::string_view documentation = {};  // SARIF: where pages of codes are, "/E3001" after it
   const RefusedRun* refused = nullptr;
 };
 

@@ -1,6 +1,6 @@
 // The form for people:
 //
-//   pump.st:4:12: error[E1002]: `;` is missing behind this statement
+//   pump.st:4:12: error[E1002]: `;` is missing after this statement
 //      4 |   speed := 5
 //        |             ^
 //      help: write `;` here

@@ -12,7 +12,7 @@ namespace {
 class Sha256 {
  public:
   Sha256() = default;
-  // Behind `length` bytes, which are whole blocks.
+  // After `length` bytes, which are whole blocks.
   Sha256(const Sha256State& state, uint64_t length) : state_(state), length_(length) {}
 
   const Sha256State& state() const { return state_; }
@@ -38,7 +38,7 @@ class Sha256 {
   }
 
  private:
-  // A block that was begun; the bytes behind it.
+  // A block that was begun; the bytes after it.
   ByteSpan fill(ByteSpan bytes) {
     const size_t more = std::min(64 - rest_, bytes.size());
     keep(bytes.first(more));

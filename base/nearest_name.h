@@ -23,7 +23,7 @@ class NearestName {
     keep_nearest(written_, candidate, candidate, best_, distance_);
   }
   const std::string& best() const { return best_; }  // "": none is near
-  // "; did you mean `X`?" behind a message, or "".
+  // "; did you mean `X`?" after a message, or "".
   std::string question() const { return best_.empty() ? "" : "; did you mean `" + best_ + "`?"; }
 
  private:

@@ -4,7 +4,7 @@
 //
 // Stored form: pieces to the end, each {u8 token, bytes, a copy}. The upper four bits of a token
 // say how many bytes follow, the lower four how long the copy is: 0 none, else 3 more. A 15 is
-// followed by a number that is added. Behind the length: how far back the copy begins. A piece
+// followed by a number that is added. After the length: how far back the copy begins. A piece
 // makes at least one byte. Numbers have seven bits a byte, the lowest first.
 #pragma once
 

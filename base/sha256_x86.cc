@@ -22,7 +22,7 @@ bool has_instructions() {
   return kHas;
 }
 
-// Two rounds per instruction; the four words behind are scheduled meanwhile. The instructions
+// Two rounds per instruction; the four words after are scheduled meanwhile. The instructions
 // want the state as ABEF and CDGH.
 __attribute__((target("sha,sse4.1"))) void compress(__m128i& abef, __m128i& cdgh,
                                                     const uint8_t* block) {

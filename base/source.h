@@ -2,7 +2,7 @@
 // a SourcePos is a 32-bit offset into their concatenation, so that tokens and
 // nodes carry four bytes and line numbers are computed only for messages.
 // Views into a text stay valid while others are added. Copies of a SourceMap share the texts. Who
-// keeps a tree over edits of its sources adds later texts behind the first ones, and says which
+// keeps a tree over edits of its sources adds later texts after the first ones, and says which
 // pieces of the first ones live on where.
 #pragma once
 
@@ -53,7 +53,7 @@ class SourceMap {
   uint32_t file_of(SourcePos pos) const;
   SourceLocation locate(SourcePos pos) const;
 
-  // Another text for a file; the positions in files behind it change.
+  // Another text for a file; the positions in files after it change.
   void replace(uint32_t file, std::string text);
   // What stood at [begin, begin + size] stands at `to` now, in a later text of the same file.
   struct Piece {
@@ -65,7 +65,7 @@ class SourceMap {
   void set_pieces(std::vector<Piece> pieces) { pieces_ = std::move(pieces); }
   bool has_pieces() const { return !pieces_.empty(); }
   SourcePos current(SourcePos pos) const;
-  // Position behind all texts.
+  // Position after all texts.
   SourcePos end() const { return {next_base_}; }
 
  private:

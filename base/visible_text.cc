@@ -17,7 +17,7 @@ size_t printable_bytes(std::string_view text) {
   for (size_t i = 1; i < size; ++i) {
     if ((byte(i) & 0xc0) != 0x80) return 0;
   }
-  // C1; longer than need be; half of a pair; behind the last one.
+  // C1; longer than need be; half of a pair; after the last one.
   const uint8_t second = byte(1);
   const bool bad = (first == 0xc2 && second < 0xa0) || (first == 0xe0 && second < 0xa0) ||
                    (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||

@@ -32,7 +32,7 @@ struct Row {
   double verify_ms = 0;
   double load_ms = 0;
   double native_ms = 0;        // machine code of all POUs, in the background
-  double first_scan_ms = 0;    // of a process: from its start to its end behind one scan
+  double first_scan_ms = 0;    // of a process: from its start to its end after one scan
   double first_native_ms = 0;  // the same with all machine code made before
   double interpreted_mib = 0;  // resident in a process without machine code, at most
   double resident_mib = 0;     // in one that makes all of it, at most
@@ -134,8 +134,8 @@ std::string page(const std::vector<Row>& rows, uint64_t size) {
                  : text_of("%.2f MiB", static_cast<double>(size) / kMiB)) +
       " (goal without adapters: 3). The fastest of several runs, on one core.\n\n"
       "Time. Verifying and loading: goal 50 ms per MiB of the image, and linear. `first scan`: a "
-      "process of `stvm run` from its start to its end behind one scan (goal: 10 ms); machine "
-      "code is made behind that by a thread in the background, while the program is interpreted. "
+      "process of `stvm run` from its start to its end after one scan (goal: 10 ms); machine "
+      "code is made after that by a thread in the background, while the program is interpreted. "
       "`with it`: verifying, loading and all machine code, per MiB; `first native scan`: of "
       "`stvm run --tier native`, which makes all of it before its first scan.\n\n"
       "| image | MiB | verify ms | load ms | ms per MiB | first scan ms | machine code ms | "
@@ -149,7 +149,7 @@ std::string page(const std::vector<Row>& rows, uint64_t size) {
            text_of("%.1f", row.first_native_ms) + " |\n";
   }
   out +=
-      "\nResident memory at most, until behind the first scan, in MiB. `without data`: without "
+      "\nResident memory at most, until after the first scan, in MiB. `without data`: without "
       "what the data memory has (goal 8); the image itself, which a controller keeps to give it "
       "away and to compare, is a part of it.\n\n"
       "| image | data | image | interpreted | without data | with machine code | without data |\n"

@@ -63,7 +63,7 @@ bool fits(const base::SourceMap& sources, uint64_t most, base::Diagnostics& diag
   return false;
 }
 
-// The library's files come behind the project's, so positions stay what they were.
+// The library's files come after the project's, so positions stay what they were.
 base::SourceMap with_library(const base::SourceMap& sources) {
   base::SourceMap all = sources;
   for (const stdlib::LibrarySource& library : stdlib::library_sources()) {

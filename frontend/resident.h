@@ -46,7 +46,7 @@ class Resident {
     std::vector<LineShift> shifts;
   };
   // Those of the program from `first` to `end` are others now, and end at `new_end`; what was
-  // behind them has moved.
+  // after them has moved.
   struct Constants {
     uint32_t first = 0;
     uint32_t end = 0;

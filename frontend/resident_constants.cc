@@ -1,5 +1,5 @@
 // Constants of bodies: each body's lie side by side, in the order in which bodies are lowered. When
-// an edited body has more of them or fewer, those of the bodies behind it move.
+// an edited body has more of them or fewer, those of the bodies after it move.
 #include <algorithm>
 
 #include "frontend/resident_parts.h"
@@ -52,7 +52,7 @@ bool Resident::may_move_constants(uint32_t pou) const {
                       [](const PouInfo& info) { return info.meaning != nullptr; });
 }
 
-// Of one body; the records of those behind it follow.
+// Of one body; the records of those after it follow.
 void Resident::replace_constants(uint32_t pou, Values values) {
   BodyRecord& record = bodies_[pou];
   const ir::ConstTable& constants = sema_->program.constants;

@@ -59,7 +59,7 @@ void Resident::note_files() {
   followable_ = std::all_of(behind_.begin(), behind_.end(), is_unused_message);
 }
 
-// Parses the file's new text behind all others, apart from the declarations that are known.
+// Parses the file's new text after all others, apart from the declarations that are known.
 std::optional<Resident::Edit> Resident::read_edit(uint32_t number, std::string_view text) {
   base::SourceMap& sources = parsed_->sources;
   Tree& tree = parsed_->tree;

@@ -33,7 +33,7 @@ bool is_utf8(std::string_view text) {
 bool is_plain(std::string_view text, const CodePlace& place) {
   const std::string_view code = text.substr(place.begin, place.end - place.begin);
   if (code.find('{') != std::string_view::npos || !is_utf8(code)) return false;
-  // The word behind them is the first of its line.
+  // The word after them is the first of its line.
   const size_t line = code.rfind('\n');
   return line != std::string_view::npos &&
          code.substr(line).find_first_not_of(" \t\r\n") == std::string_view::npos;

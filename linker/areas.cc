@@ -88,7 +88,7 @@ class Placer {
   }
 
   // Data memory grows when a change needs it (case 71): to what the areas of the running version
-  // take, and the free area of the project behind them. So the same program again changes nothing.
+  // take, and the free area of the project after them. So the same program again changes nothing.
   bool grow() {
     if (base_ == nullptr) return false;
     const uint32_t grown = capacity_behind(*base_, [&](uint32_t id) { return old_area(id); });
@@ -98,7 +98,7 @@ class Placer {
     return true;
   }
 
-  // Where areas of these sizes would end that go one behind the other to the end of data memory.
+  // Where areas of these sizes would end that go one after the other to the end of data memory.
   uint64_t end_of(std::span<const uint32_t> ids) const {
     uint64_t end = capacity_;
     for (const auto& [begin, behind] : free_.ranges()) {

@@ -21,7 +21,7 @@ struct StackNeeds {
 // with the other, if their frames are as large.
 bool same_calls(const ir::Object& a, const ir::Object& b);
 
-// By POU number, and behind them what calls that are decided at run time lead to
+// By POU number, and after them what calls that are decided at run time lead to
 // (ir::DynamicCalls). `objects` by POU number, null for unused numbers.
 std::vector<ir::CallNode> call_nodes(const ir::Image& image,
                                      const std::vector<const ir::Object*>& objects);

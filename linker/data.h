@@ -19,7 +19,7 @@ void bind_address(ir::Image& image, const ir::DirectAddress& address, uint32_t d
 // Sets input_bytes and output_bytes so that everything in image.io has its place. kTooMany when
 // that is more than devices can exchange.
 base::Status size_process_image(ir::Image& image);
-// Behind it: sets devices, gives a map to those without one, and makes the process image cover all.
+// After it: sets devices, gives a map to those without one, and makes the process image cover all.
 // kBadMapping where two of them do not go together.
 base::Status place_devices(ir::Image& image, const std::vector<ir::Device>& devices);
 

@@ -32,7 +32,7 @@ std::vector<std::string> units_of(const ir::Image& image) {
 
 struct Steps {
   bool table = false;
-  std::vector<std::string> units;  // in the order of the sources, removed ones behind
+  std::vector<std::string> units;  // in the order of the sources, removed ones after
 };
 
 Steps all_steps(const EditImages& edit) {
@@ -83,7 +83,7 @@ base::Result<Calls> calls_between_units(const ir::Image& image) {
   return calls;
 }
 
-// Each unit behind those that it calls, of which only those in `units` count; in a circle of calls
+// Each unit after those that it calls, of which only those in `units` count; in a circle of calls
 // one has to begin.
 class CalleesFirst {
  public:

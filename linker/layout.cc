@@ -22,7 +22,7 @@ using ir::TypeLayout;
 
 constexpr uint32_t kSlotBytes = 4;        // an instance ID or an address
 constexpr uint32_t kMaxEmbedding = 1000;  // structures inside structures
-// Larger members of an area go behind the small ones, which 16-bit offsets reach.
+// Larger members of an area go after the small ones, which 16-bit offsets reach.
 constexpr uint64_t kLargeMember = 256;
 
 uint64_t align_up(uint64_t value, uint64_t align) { return (value + align - 1) / align * align; }
@@ -285,7 +285,7 @@ class Builder {
     finish_members(id);
   }
 
-  // In order of preference: holes of the running version, the space behind it, what
+  // In order of preference: holes of the running version, the space after it, what
   // this change frees, and beyond the capacity.
   void place_added(TypeId id, TypeId old, uint32_t capacity, const std::vector<size_t>& added,
                    Extents& taken, std::vector<uint32_t>& offsets) {

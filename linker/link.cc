@@ -217,7 +217,7 @@ class Linker {
     return base::Ok{};
   }
 
-  // Keeps the numbers behind a removed POU: a function that nobody calls.
+  // Keeps the numbers after a removed POU: a function that nobody calls.
   static LinkedCode unused_pou() {
     LinkedCode unused;
     unused.code.push_back(ir::Unit::make(ir::Opcode::RET));

@@ -172,7 +172,7 @@ class Relinker {
   }
 
   void put_in(const std::vector<uint32_t>& numbers, std::vector<LinkedCode>& codes) {
-    // Each moves what is behind it; many are better put together anew.
+    // Each moves what is after it; many are better put together anew.
     constexpr size_t kMany = 8;
     if (numbers.size() > kMany) return put_together(numbers, codes);
     for (size_t i = 0; i < numbers.size(); ++i) exchange(numbers[i], std::move(codes[i]));

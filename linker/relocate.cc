@@ -174,7 +174,7 @@ class Pass {
                         (row.name.starts_with("LD_") || row.name.starts_with("ST_"));
     if (!scalar) {
       return fail(
-          "a function block or in-out variable lies more than 65,535 bytes behind the "
+          "a function block or in-out variable lies more than 65,535 bytes after the "
           "start of its instance");
     }
     const uint16_t slot = scratch_slot({Class::kA, leaf, addr});

@@ -10,7 +10,7 @@
 #
 # A TEST is a file under tests/golden, another one under tests (cli/x.sh), or #NAME, a test of a program of tests/unit or
 # tests/sim; the pattern must then be in that name.
-# A feature without a test is printed as "no"; text behind "no:" says why.
+# A feature without a test is printed as "no"; text after "no:" says why.
 set -eu
 root=$1
 list=$2

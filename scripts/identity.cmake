@@ -1,5 +1,5 @@
 # Writes OUT, the text of tools/common/version.h: VERSION, and the commit of SOURCE_DIR, with `-changed`
-# behind it when files differ from that commit. OUT stays untouched when it says so already, so that
+# after it when files differ from that commit. OUT stays untouched when it says so already, so that
 # nothing is compiled anew. `unknown` in what is no repository of its own: a tarball.
 set(commit unknown)
 if(COMMIT)

@@ -1,7 +1,7 @@
 # Writes OUT: a table of the files in SOURCES as C++ string literals (stdlib/sources.h).
 #
 # A file with lines `(* VARIANT _SUFFIX old=new ... *)` is written once more for each of them, with every
-# `old` replaced by `new` and the suffix behind the name of every POU: one source for all types.
+# `old` replaced by `new` and the suffix after the name of every POU: one source for all types.
 function(embed name text)
   file(APPEND ${OUT}.tmp "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\"},\n")
 endfunction()

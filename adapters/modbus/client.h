@@ -1,5 +1,5 @@
 // The client's side: asks for every mapped range in requests as large as Modbus allows, writes
-// first. All of an exchange must be done within timeout_ms; behind any failure but an exception of
+// first. All of an exchange must be done within timeout_ms; after any failure but an exception of
 // the device the line is opened anew, so that a late answer is never taken for another one's.
 #pragma once
 

@@ -27,7 +27,7 @@ std::optional<HostAndPort> parse_endpoint(std::string_view text);
 base::Result<Context> open_tcp(const ir::Device& device);
 base::Result<Context> open_rtu(const ir::Device& device);
 
-// What errno says behind a call that failed.
+// What errno says after a call that failed.
 std::string reason();
 // The same of a serial port that could not be opened, with the way out.
 std::string reason_of_port();

@@ -56,7 +56,7 @@ class Form {
   }
   bool has(size_t size) const { return bytes_.size() == size; }
   bool counts(size_t at, unsigned most) const { return word(at) >= 1 && word(at) <= most; }
-  // So many bytes behind the one that says so.
+  // So many bytes after the one that says so.
   bool brings(size_t at, unsigned count) const {
     return at < bytes_.size() && bytes_[at] == count && has(at + 1 + count);
   }

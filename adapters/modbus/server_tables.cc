@@ -174,7 +174,7 @@ bool ServerTables::answer(modbus_t* context, const uint8_t* request, int length,
   }
   const int sent = modbus_reply(context, request, length, tables_.get());
   if (sent < 0) return false;
-  // An exception has two bytes behind its header, and by RTU two more: then nothing was written.
+  // An exception has two bytes after its header, and by RTU two more: then nothing was written.
   // To a broadcast nothing is sent.
   const bool done = sent == 0 || sent > header + (header == kRtuHeader ? 4 : 2);
   if (asking.writes != nullptr && written.count != 0 && done) pass_on(written, asking);

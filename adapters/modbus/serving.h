@@ -21,7 +21,7 @@ class Serving : public vm::IoDriver {
         tables_(ir::setting(device, "word_order") == "high"),
         period_ns_(ir::number_setting(device, "period_ms") * 1'000'000),
         timeout_ns_(std::max(ir::number_setting(device, "timeout_ms") * 1'000'000, period_ns_)) {
-    set_response_timeout(context_.get(), 1'000'000);  // what it sleeps behind nonsense
+    set_response_timeout(context_.get(), 1'000'000);  // what it sleeps after nonsense
     modbus_set_byte_timeout(context_.get(), 0, kSlowestByteUs);
   }
 

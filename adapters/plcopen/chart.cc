@@ -25,7 +25,7 @@ struct ChartElement {
   std::vector<Action> actions;  // steps
 };
 
-// From an element to the next one; `joined`: behind a convergence or divergence of simultaneous
+// From an element to the next one; `joined`: after a convergence or divergence of simultaneous
 // branches, so several are meant.
 struct Way {
   const ChartElement* from;

@@ -1,5 +1,5 @@
 // <LD>, <FBD> and what of them stands in <SFC>: elements with local ids -> the model of networks.
-// Connectors, continuations and variables that are written and read at once are gone behind it.
+// Connectors, continuations and variables that are written and read at once are gone after it.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ class Drawing {
 
   // False: it is no element of a diagram.
   bool add(Node node);
-  // Behind the last element: what connections name. False when anything was wrong.
+  // After the last element: what connections name. False when anything was wrong.
   bool connect();
   // What a <connectionPointIn> outside of these elements is connected to.
   std::vector<network::Link> links_of(Node point);
@@ -33,7 +33,7 @@ class Drawing {
 
  private:
   enum class What : uint8_t { kElement, kConnector, kContinuation, kInOut };
-  struct Passed {  // an in-out parameter of a block, to be read behind it
+  struct Passed {  // an in-out parameter of a block, to be read after it
     std::string name;
     Node point;
     uint32_t source = kNone;

@@ -231,7 +231,7 @@ void Drawing::add_written(Node node, Kind kind) {
   wait_for(number, 0, node, false);
 }
 
-// What is written is read behind it.
+// What is written is read after it.
 void Drawing::add_both(Node node, Kind kind) {
   const bool plain = !xml::boolean(xml::attribute(node, "negatedIn")).value_or(false) &&
                      !xml::boolean(xml::attribute(node, "negatedOut")).value_or(false);

@@ -198,7 +198,7 @@ bool Drawing::link_block(Raw& raw, Node connection, std::vector<Link>& out) {
   return true;
 }
 
-// The variable that was given to an in-out parameter, read behind the block.
+// The variable that was given to an in-out parameter, read after the block.
 uint32_t Drawing::read_back(Raw& raw, Passed& passed) {
   if (passed.source != kNone) return passed.source;
   std::vector<Link> links;

@@ -10,7 +10,7 @@ using network::Modifier;
 
 namespace {
 
-// CODESYS numbers the pins of operators with EN as the first: In2 and In3 behind it.
+// CODESYS numbers the pins of operators with EN as the first: In2 and In3 after it.
 bool is_operator(Node block) {
   for (Node data : xml::children(xml::child(block, "addData"), "data")) {
     if (is_vendor(data, "fbdcalltype") && xml::trimmed(xml::text_of(data)) == "operator") {

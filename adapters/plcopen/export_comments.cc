@@ -135,7 +135,7 @@ void report_lost_comments(const ExportInput& input, Node root, base::Diagnostics
     diagnostics.add(base::DiagnosticCode::kXmlLeftOut, first,
                     std::to_string(count) + " comment(s) are left out, in line(s) " + lines +
                         ": XML has no place for them",
-                    "put them in front of a POU, or behind a variable, or into a body");
+                    "put them in front of a POU, or after a variable, or into a body");
   }
 }
 

@@ -59,7 +59,7 @@ std::string Writer::comment_before(base::SourcePos begin) const {
   return std::string(xml::trimmed(text.substr(open + 2, text.size() - open - 4)));
 }
 
-// A comment behind `end` in its line.
+// A comment after `end` in its line.
 std::string Writer::comment_behind(base::SourcePos end) const {
   const uint32_t file = in_.sources.file_of(end);
   if (file == in_.sources.file_count()) return {};
@@ -146,7 +146,7 @@ Writer::Pieces Writer::pieces(base::SourceSpan span, base::SourcePos head_end) c
   return out;
 }
 
-// Behind the head, up to END_TRANSITION. `list`: instructions.
+// After the head, up to END_TRANSITION. `list`: instructions.
 std::string Writer::condition_of(const frontend::ChartTransition& transition, bool& list) const {
   const uint32_t file = in_.sources.file_of(transition.span.end);
   std::string_view text = in_.sources.text(file);

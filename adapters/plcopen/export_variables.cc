@@ -100,7 +100,7 @@ bool Writer::put_list(Node parent, const VarBlock& block, const std::string& nam
     if (!is_made(decl)) whole = put_variable(list, block, decl) && whole;
   }
   put_attributes(list, block.attributes);
-  // A list with a name is tagged behind this, and its comment is that of the source.
+  // A list with a name is tagged after this, and its comment is that of the source.
   if (name.empty()) put_documentation(list, comment_before(block.span.begin));
   return whole;
 }

@@ -67,7 +67,7 @@ std::string body_text(Node owner, const std::string& name, Reporter& report);
 std::string language_text(Node body, Node owner, const std::string& name, Reporter& report);
 // Statements in the place of a body that could not be imported: nothing takes it for empty.
 std::string error_text(const std::string& text);
-// A condition behind FROM ... TO ...: `:= expression;`, or an instruction list behind a colon.
+// A condition after FROM ... TO ...: `:= expression;`, or an instruction list after a colon.
 // `name` is that of the transition, to which a body may assign its value; it may be empty.
 std::string condition_text(Node body, const std::string& name, Reporter& report);
 

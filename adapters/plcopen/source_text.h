@@ -66,7 +66,7 @@ class SourceTexts {
   // no part.
   bool take(const xml::Document& document, xml::Node element, const std::string& name,
             std::string& text);
-  // Behind the last element: the sources. Notes about parts that are no longer as they were; what
+  // After the last element: the sources. Notes about parts that are no longer as they were; what
   // was found in the elements of others is gone, for the compiler sees their text.
   void finish(xml::Reporter& report);
 

@@ -34,7 +34,7 @@ class Writer {
 
   // No element says it: an error, or a warning where the text of the sources does.
   void fail(base::SourceSpan at, std::string text);
-  // `element` is what is declared at `at`; behind everything else of it but documentation.
+  // `element` is what is declared at `at`; after everything else of it but documentation.
   void tag(Node element, base::SourcePos at) {
     if (parts_) parts_->tag(element, at);
   }

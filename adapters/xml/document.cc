@@ -47,7 +47,7 @@ bool Document::parse(const std::string& text, Imported& out) {
   return false;
 }
 
-// Walks without recursion; everybody behind may recurse.
+// Walks without recursion; everybody after may recurse.
 bool Document::within_depth(Imported& out) {
   uint32_t depth = 0;
   Node node = parsed_;

@@ -92,7 +92,7 @@ class Reporter {
 
 // --- walking
 std::string_view local_name(Node node);
-std::string_view local_name(std::string_view name);  // behind the last `:`
+std::string_view local_name(std::string_view name);  // after the last `:`
 bool is(Node node, std::string_view name);
 Node child(Node node, std::string_view name);
 // `names`: child of child ...
@@ -114,7 +114,7 @@ bool is_name(std::string_view text);
 std::string as_name(std::string_view text);
 // `(* text *)`, which nothing in `text` ends.
 std::string comment(std::string_view text, std::string_view indent);
-// The lines of `text`, each behind `indent` unless empty, each ended.
+// The lines of `text`, each after `indent` unless empty, each ended.
 std::string indented(std::string_view text, std::string_view indent);
 // Of the first element that has it, in a message: <variable name="x">
 std::string shown(Node node);

@@ -26,7 +26,7 @@ struct Part {
   PartKind kind = PartKind::kStep;
   uint32_t number = 0;  // of a step or transition
   std::vector<Sequence> branches;
-  std::vector<bool> meets;  // by branch: goes on behind all of them
+  std::vector<bool> meets;  // by branch: goes on after all of them
 };
 
 // Sequences beside each other: one for each network, and for what no other one leads to. Every

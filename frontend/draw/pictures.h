@@ -17,7 +17,7 @@ class Rung {
   // Room for what stands beside the right rail; 0: nothing does.
   double coil() const { return right_columns_.empty() ? 0 : right_columns_[0]; }
   void widen_coil(double room);
-  // The right rail is `width` behind kLeft.
+  // The right rail is `width` after kLeft.
   void draw(Svg& svg, double y, double width) const;
 
  private:

@@ -139,7 +139,7 @@ class Reader {
     return found;
   }
 
-  // Behind the `:` of a box stand a type and its parenthesis.
+  // After the `:` of a box stand a type and its parenthesis.
   bool is_box(size_t colon) {
     size_t begin = cursor_.place();
     cursor_.go_to(colon + 1);
@@ -184,7 +184,7 @@ class Reader {
     }
     cursor_.take();
     PinValue value = network::read_value(cursor_, TokenKind::kSemicolon);
-    if (value.operand.empty()) bad("there is no operand behind IF");
+    if (value.operand.empty()) bad("there is no operand after IF");
     element.inputs[0].modifier = value.modifier;
     operand = std::move(value.operand);
   }
@@ -225,7 +225,7 @@ class Reader {
     size_t begin = cursor_.place();
     cursor_.take();
     Text name = cursor_.name();
-    if (!cursor_.accept(TokenKind::kAssign)) return bad("expected `:=` behind the wire's name");
+    if (!cursor_.accept(TokenKind::kAssign)) return bad("expected `:=` after the wire's name");
     size_t value = cursor_.place();
     bool call = !cursor_.name().empty() && cursor_.kind() == TokenKind::kLeftParen;
     cursor_.go_to(value);
@@ -243,7 +243,7 @@ class Reader {
     cursor_.take();  // the parenthesis
     std::vector<Pin> pins = network::read_pins(cursor_, TokenKind::kRightParen);
     if (cursor_.good() && !cursor_.accept(TokenKind::kRightParen)) {
-      bad("expected `)` behind the pins, found " + cursor_.found(), "write `)`");
+      bad("expected `)` after the pins, found " + cursor_.found(), "write `)`");
     }
     if (!cursor_.good()) return;
     std::vector<Text> operands;
@@ -290,7 +290,7 @@ class Reader {
     }
     cursor_.take();
     PinValue value = network::read_value(cursor_, TokenKind::kSemicolon);
-    if (value.operand.empty()) return bad("there is no operand behind `:=`");
+    if (value.operand.empty()) return bad("there is no operand after `:=`");
     element.inputs.resize(1);
     element.inputs[0].modifier = value.modifier;
     element.inputs[0].span = value.operand.span;

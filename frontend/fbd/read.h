@@ -13,7 +13,7 @@
 //     Beep := FALSE;
 //   END_FBD
 //
-// Boxes are executed as they stand. An operand is a wire, an output of a box behind a `.`
+// Boxes are executed as they stand. An operand is a wire, an output of a box after a `.`
 // (delay.Q, cold.ENO), or an expression without wires. `NOT x`, `[/ x]`, `[P x]`, `[N x]` are
 // pins that are negated or see edges. EN and ENO are pins as others: while EN is FALSE,
 // variables that a box writes stay as they are. The output of a function block may be used above

@@ -23,7 +23,7 @@ Body read(TokenKind head, std::string_view text, bool& good) {
   return body;
 }
 
-// A row ends with `;`, a label with `:`; a box has a type and a parenthesis behind its `:`.
+// A row ends with `;`, a label with `:`; a box has a type and a parenthesis after its `:`.
 Outline outline_fbd(const Text& text) {
   Outline out;
   out.soft_keywords.resize(text.token_count());

@@ -11,7 +11,7 @@
 
 namespace frontend::formatting {
 
-// `head`: kLadder or kFbd. Rows that begin in column `indent`, without a line end behind the last.
+// `head`: kLadder or kFbd. Rows that begin in column `indent`, without a line end after the last.
 // nullopt when the text has errors, cannot be drawn by ladder/read.h's rules (a tap inside of a
 // branch), or says stc:off: it stays as it is.
 std::optional<std::string> drawn(TokenKind head, std::string_view text, uint32_t indent,

@@ -63,7 +63,7 @@ base::Result<std::string> format_tokens(const base::SourceMap& sources, uint32_t
   if (errors != 0) return errors_in(sources, file, errors);
   if (uint32_t open = open_diagram(sources, file, tokens); open < tokens.tokens.size()) {
     diagnostics.add(base::DiagnosticCode::kMissingEnd, tokens.tokens[open].span(),
-                    "this drawing has no end", "write END_LADDER behind it");
+                    "this drawing has no end", "write END_LADDER after it");
     return errors_in(sources, file, 1);
   }
   base::SourceMap result;
@@ -74,7 +74,7 @@ base::Result<std::string> format_tokens(const base::SourceMap& sources, uint32_t
   for (const Token& token : tokens.tokens) {
     if (token.kind != TokenKind::kLadder && token.kind != TokenKind::kFbd) continue;
     diagnostics.add(base::DiagnosticCode::kMissingEnd, token.span(), "this drawing has no end",
-                    "write LADDER or FBD in a row of its own, and its end behind it");
+                    "write LADDER or FBD in a row of its own, and its end after it");
     return errors_in(sources, file, 1);
   }
   return same.error();

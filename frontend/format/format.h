@@ -28,7 +28,7 @@ struct FormatOptions {
   bool align_declarations = true;  // `:` and `:=` of neighbouring declarations
   bool align_arguments = true;     // `:=` and `=>` of parameter lists with a line for each
   bool align_assignments = false;  // `:=` of neighbouring statements
-  bool align_comments = true;      // comments behind neighbouring lines
+  bool align_comments = true;      // comments after neighbouring lines
 };
 
 // Formats file number `file`. kSourceErrors when `diagnostics` got errors, kInternal when the

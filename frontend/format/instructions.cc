@@ -74,7 +74,7 @@ uint32_t Outliner::behind_labels(uint32_t i) const {
   return i;
 }
 
-// Behind the last token of the row; the brackets of a call may fill several. `nested`: an argument
+// After the last token of the row; the brackets of a call may fill several. `nested`: an argument
 // in them has instructions of its own, whose rows mean something.
 uint32_t Outliner::behind_row(uint32_t i, bool& nested) const {
   uint32_t depth = 0;

@@ -10,7 +10,7 @@ void Layout::measure(const Line& line) {
   first_ = line.first;
   uint32_t count = line.end - line.first;
   blank_.assign(count, false);
-  // Behind the last token, too: there an operator may end the line, and nothing stands or breaks.
+  // After the last token, too: there an operator may end the line, and nothing stands or breaks.
   before_.assign(count + 1, 0);
   width_sum_.assign(count + 1, 0);
   forced_sum_.assign(count + 2, 0);

@@ -29,7 +29,7 @@ class Layout {
   void put(std::string_view part);
   void put_blank();
   void put_piece(const Piece& piece);
-  // Behind the code of the open row.
+  // After the code of the open row.
   void put_trailing(const Piece& piece);
   Row& row() { return rows_.rows.back(); }
   uint32_t columns_of(uint32_t level) const { return level * options_.indent; }
@@ -74,7 +74,7 @@ class Layout {
   void match_brackets(const Line& line);
   uint32_t next_operator(uint32_t i, uint32_t end, Binding at) const;
   Binding loosest(uint32_t first, uint32_t end) const;
-  uint32_t skip(uint32_t i) const {  // behind the token or group at `i`
+  uint32_t skip(uint32_t i) const {  // after the token or group at `i`
     return partner_[i - first_] > i ? partner_[i - first_] + 1 : i + 1;
   }
   void mark(uint32_t slot);

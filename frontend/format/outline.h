@@ -27,14 +27,14 @@ struct Line {
   uint32_t comment_level = 0;  // of comments on lines of their own in front of it
   uint32_t block = 0;          // the block that it stands in, to tell neighbours
   uint32_t row_end = 0;        // head of a block that stood in one row: the line that ends it
-  uint32_t label_end = 0;      // a label with its statement: first token behind the label
+  uint32_t label_end = 0;      // a label with its statement: first token after the label
   uint32_t operand = 0;        // kInstruction: its first operand; 0: there is none
   uint32_t label_levels = 0;   // kInstruction with a label: from its column to the operator's
   LineKind kind = LineKind::kStatement;
   bool one_row = false;   // kInstruction: its brackets are not broken either
   bool closes = false;    // no blank line in front of it
-  bool opens = false;     // no blank line behind it
-  bool ends_pou = false;  // always a blank line behind it
+  bool opens = false;     // no blank line after it
+  bool ends_pou = false;  // always a blank line after it
 };
 
 struct Outline {

@@ -31,7 +31,7 @@ struct Piece {
 struct Gap {
   uint32_t first = 0;  // of Text::pieces
   uint32_t count = 0;
-  uint32_t newlines_after = 0;  // behind the last piece
+  uint32_t newlines_after = 0;  // after the last piece
 };
 
 class Text {
@@ -40,7 +40,7 @@ class Text {
 
   std::string_view text() const { return text_; }
   uint32_t token_count() const { return static_cast<uint32_t>(tokens_.size()); }  // with kEnd
-  // kEnd for everything behind the last token.
+  // kEnd for everything after the last token.
   TokenKind kind(uint32_t i) const {
     return i < tokens_.size() ? tokens_[i].kind : TokenKind::kEnd;
   }

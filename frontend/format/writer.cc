@@ -98,7 +98,7 @@ void Writer::open_line(const Line& line, uint32_t newlines) {
   layout_.open_row(layout_.columns_of(line.level), RowKind::kCode, empty_before);
 }
 
-// What stands in front of the first token of `line`: comments behind the line before, comments of
+// What stands in front of the first token of `line`: comments after the line before, comments of
 // their own, and what stays in the row of the token.
 void Writer::boundary(const Line& line) {
   prefix_.clear();

@@ -21,7 +21,7 @@ class Writer {
   struct Region {
     uint32_t begin;
     uint32_t end;
-    bool joined;  // goes on behind the comment that opens it
+    bool joined;  // goes on after the comment that opens it
   };
   // writer.cc
   void write_line(uint32_t index);

@@ -86,7 +86,7 @@ class RowReader {
     if (!line && end == text_.size() &&
         (whole.size() < 4 || !whole.ends_with(at("(*") ? "*)" : "*/"))) {
       report(Code::kUnterminatedComment, at_, at_ + 2, "this comment is not closed",
-             "close it behind its text");
+             "close it after its text");
     }
     current().comments.push_back(network::comment_text(whole));
     if (current().kind == RowKind::kBlank) current().kind = RowKind::kComment;

@@ -23,7 +23,7 @@ enum class SegmentKind : uint8_t {
 struct Segment {
   SegmentKind kind = SegmentKind::kWire;
   uint32_t column = 0;  // first
-  uint32_t end = 0;     // behind the last
+  uint32_t end = 0;     // after the last
   uint32_t byte = 0;    // in the text, of the first character
   uint32_t bytes = 0;
   bool is_element() const { return kind >= SegmentKind::kContact; }
@@ -34,7 +34,7 @@ enum class RowKind : uint8_t { kBlank, kComment, kLabel, kDrawing };
 struct Row {
   RowKind kind = RowKind::kBlank;
   std::vector<Segment> segments;      // kDrawing: not empty, by column
-  std::vector<std::string> comments;  // without marks; also behind a drawing or a label
+  std::vector<std::string> comments;  // without marks; also after a drawing or a label
   bool damaged = false;               // something of it was reported
   uint32_t label = 0;                 // kLabel: its byte
   uint32_t label_bytes = 0;

@@ -105,7 +105,7 @@ class ElementReader {
     return found;
   }
 
-  // `F(...)` and nothing behind it; the cursor stays.
+  // `F(...)` and nothing after it; the cursor stays.
   bool is_call() {
     size_t begin = cursor_.place();
     bool call = !cursor_.name().empty() && cursor_.kind() == TokenKind::kLeftParen;
@@ -190,7 +190,7 @@ class ElementReader {
     size_t begin = cursor_.place();
     from.value.operand = cursor_.operand(TokenKind::kRightBracket);
     from.span = cursor_.span_from(begin);
-    if (from.value.operand.empty()) bad("there is no value behind `:=`");
+    if (from.value.operand.empty()) bad("there is no value after `:=`");
     Pin to;
     to.output = true;
     to.span = target.span;
@@ -198,7 +198,7 @@ class ElementReader {
     return finish(std::move(element), {from, to}, "");
   }
 
-  // Sources of inputs stand in front of the box, sinks of outputs behind it.
+  // Sources of inputs stand in front of the box, sinks of outputs after it.
   Made finish(Element element, const std::vector<Pin>& pins, const char* usual_output) {
     Made made;
     bool power_in = false;

@@ -114,7 +114,7 @@ class RungReader {
     return good;
   }
 
-  // Every element behind a wire has a link to every one in front of it.
+  // Every element after a wire has a link to every one in front of it.
   bool check_size() {
     uint64_t links = 0;
     for (const Node& node : rung_.nodes) links += uint64_t{node.drivers.size()} * node.users.size();

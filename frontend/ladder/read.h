@@ -12,7 +12,7 @@
 //
 // Wires: `-` goes from side to side; `+` joins what touches it on all four sides; `|` goes up and
 // down between `+`. The first `|` of the drawing is the left rail: every `|` in its column is. A
-// `|` that ends a row behind a wire or an element is the right rail, which may be left out. A rung
+// `|` that ends a row after a wire or an element is the right rail, which may be left out. A rung
 // is what is connected; its rows are neighbours. Elements:
 //
 //   [ a ]  [/ a ]  [P a ]  [N a ]       contact of any BOOL expression: plain, negated, edges

@@ -84,7 +84,7 @@ class Finder {
     }
   }
 
-  // The right rail ends a row behind a wire; where the row is empty else, rows around tell.
+  // The right rail ends a row after a wire; where the row is empty else, rows around tell.
   void find_rails() {
     for (uint32_t r = 0; r < rows_.size(); ++r) {
       const std::vector<Segment>& row = rows_[r].segments;

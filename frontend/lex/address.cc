@@ -42,7 +42,7 @@ MaybeProblem read_levels(std::string_view rest, std::vector<uint32_t>& levels) {
   for (;;) {
     uint32_t level = 0;
     if (!read_number(rest, level)) {
-      return bad_address("a number that is not too large belongs behind the size",
+      return bad_address("a number that is not too large belongs after the size",
                          "write it like %IX0.0 or %QW4");
     }
     levels.push_back(level);
@@ -51,7 +51,7 @@ MaybeProblem read_levels(std::string_view rest, std::vector<uint32_t>& levels) {
                          " levels");
     }
     if (rest.empty()) return {};
-    if (rest[0] != '.') return bad_address("only digits belong behind the size");
+    if (rest[0] != '.') return bad_address("only digits belong after the size");
     rest.remove_prefix(1);
   }
 }

@@ -61,7 +61,7 @@ void Conditions::begin_if(PragmaReader& reader, base::SourceSpan span) {
 void Conditions::next_branch(PragmaReader& reader, bool has_condition) {
   if (frames_.empty() || frames_.back().has_else) {
     return fail(frames_.empty() ? "no {IF ...} is open in front of this branch"
-                                : "this branch stands behind the {ELSE} of its {IF ...}");
+                                : "this branch stands after the {ELSE} of its {IF ...}");
   }
   // The condition may not change the frames.
   bool outer = frames_.back().outer;

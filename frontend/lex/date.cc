@@ -27,7 +27,7 @@ class DateDecoder {
     out_.form = form_of(prefix);
     at_ = hash + 1;
     if (out_.form != DateForm::kTimeOfDay) date();
-    if (out_.form == DateForm::kDateAndTime) skip('-', "a time of day belongs behind the date");
+    if (out_.form == DateForm::kDateAndTime) skip('-', "a time of day belongs after the date");
     if (out_.form != DateForm::kDate) time_of_day();
     if (at_ < text_.size()) bad(at_, "nothing more belongs here");
     if (!out_.time.problem) store();

@@ -81,7 +81,7 @@ class Collector {
     }
   }
 
-  // `name :`, `name, name :`, `name AT %QX0.0 :` behind the end of another declaration.
+  // `name :`, `name, name :`, `name AT %QX0.0 :` after the end of another declaration.
   void visit_name() {
     TokenKind next = kind(at_ + 1);
     if (in_types_ && (next == TokenKind::kColon || next == TokenKind::kExtends)) {

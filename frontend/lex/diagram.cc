@@ -1,4 +1,4 @@
-// The text forms of ladder and FBD have readers of their own (ladder/read.h, fbd/read.h). Behind
+// The text forms of ladder and FBD have readers of their own (ladder/read.h, fbd/read.h). After
 // LADDER or FBD in a line of its own, everything up to its end gives no tokens.
 #include "frontend/lex/characters.h"
 #include "frontend/lex/keywords.h"

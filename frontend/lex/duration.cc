@@ -46,7 +46,7 @@ class DurationDecoder {
     while (is_name_start(peek()) && peek() != '_') ++at_;
     size_t unit = unit_index(text_.substr(unit_at, at_ - unit_at));
     if (unit == ir::kTimeUnits.size()) {
-      return bad(unit_at, at_ - unit_at, "a unit d, h, m, s, ms, us or ns belongs behind a number");
+      return bad(unit_at, at_ - unit_at, "a unit d, h, m, s, ms, us or ns belongs after a number");
     }
     if (unit < next_unit_)
       return bad(begin, at_ - begin, "units go from large to small, each once");

@@ -98,7 +98,7 @@ struct DecodedPart {
   uint8_t bit_size = 1;
   MaybeProblem problem;
 };
-// %X3 %B1 %W1 %D0 behind a dot
+// %X3 %B1 %W1 %D0 after a dot
 DecodedPart decode_part(std::string_view text);
 
 }  // namespace frontend

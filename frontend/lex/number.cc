@@ -36,7 +36,7 @@ bool is_base(uint32_t base) { return base == 2 || base == 8 || base == 10 || bas
 
 void decode_digits(std::string_view digits, size_t offset, uint32_t base, DecodedInteger& out) {
   constexpr uint64_t kMax = std::numeric_limits<uint64_t>::max();
-  if (digits.empty()) out.problem = bad_number(0, 0, "digits are missing behind `#`");
+  if (digits.empty()) out.problem = bad_number(0, 0, "digits are missing after `#`");
   for (size_t i = 0; i < digits.size() && !out.problem; ++i) {
     if (digits[i] == '_') {
       if (!misplaced_underscore(digits, i)) continue;

@@ -51,7 +51,7 @@ std::string_view inside_pragma(std::string_view pragma) {
 
 namespace {
 
-// , 'text' ...; what `first` begins ends behind the last of them.
+// , 'text' ...; what `first` begins ends after the last of them.
 std::string_view read_more(PragmaReader& reader, std::string_view first) {
   while (reader.accept_sign(',')) {
     if (reader.kind() != PragmaReader::Kind::kText) return {};

@@ -34,7 +34,7 @@ struct PragmaAttribute {
   std::string_view value;
   bool has_value = false;
   std::string_view part;  // {renamed '.part' from := 'old'}
-  bool marked = false;    // `, inverse` behind the value
+  bool marked = false;    // `, inverse` after the value
 };
 // `{attribute 'name'}`, `{attribute 'name' := 'value'}`, and `{renamed from := 'old'}` as an
 // attribute `renamed`, whose value is missing when it is written in another way, and goes on to the

@@ -58,7 +58,7 @@ TokenList Scanner::run() {
   list_.tokens.push_back({base_ + static_cast<uint32_t>(text_.size()), 0, TokenKind::kEnd});
   for (base::SourceSpan open : conditions_.open_spans()) {
     diagnostics_.add(DiagnosticCode::kOpenCondition, open, "this {IF ...} has no {END_IF}",
-                     "write {END_IF} behind the last line that depends on it");
+                     "write {END_IF} after the last line that depends on it");
   }
   return std::move(list_);
 }
@@ -127,8 +127,8 @@ TokenKind Scanner::dash(size_t begin) {
   return TokenKind::kMinus;
 }
 
-// `T#5s` is one token, `INT#5` two: the type prefix, and a literal or name behind
-// it. A prefix such as `T` or `D` without a digit behind it may be an enumeration's.
+// `T#5s` is one token, `INT#5` two: the type prefix, and a literal or name after
+// it. A prefix such as `T` or `D` without a digit after it may be an enumeration's.
 TokenKind Scanner::scan_prefixed(std::string_view prefix) {
   ++at_;
   bool sign = peek() == '-' || peek() == '+';
@@ -195,7 +195,7 @@ TokenKind Scanner::scan_number() {
     return TokenKind::kInteger;
   }
   TokenKind kind = TokenKind::kInteger;
-  // `a.1.2` and `1..5` are not reals; a bit number behind a dot never has a fraction.
+  // `a.1.2` and `1..5` are not reals; a bit number after a dot never has a fraction.
   bool after_dot = !list_.tokens.empty() && list_.tokens.back().kind == TokenKind::kDot;
   if (!after_dot && peek() == '.' && is_digit(peek(1))) {
     ++at_;

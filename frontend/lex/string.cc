@@ -17,7 +17,7 @@ std::string_view content(std::string_view text) {
   return inside;
 }
 
-// IEC table 7: the character behind `$`; 0 when it is not one of them.
+// IEC table 7: the character after `$`; 0 when it is not one of them.
 char simple_escape(char c) {
   switch (to_upper(c)) {
     case '$':
@@ -63,7 +63,7 @@ LiteralProblem bad_escape(size_t at, size_t hex_digits) {
   std::string digits = hex_digits == 2 ? "two" : "four";
   return {DiagnosticCode::kBadEscape, static_cast<uint32_t>(at + 1), 2,
           "`$` begins an escape, and this is none",
-          "write `$$` for a dollar sign, or " + digits + " hexadecimal digits behind `$`"};
+          "write `$$` for a dollar sign, or " + digits + " hexadecimal digits after `$`"};
 }
 
 LiteralProblem wide_character(size_t at, std::string_view character) {

@@ -59,7 +59,7 @@ void Scanner::skip_nested(char open, char close, std::string_view opening) {
   at_ = text_.size();
   std::string closing = std::string("*") + close;
   report(DiagnosticCode::kUnterminatedComment, begin, begin + 2,
-         "this comment is not closed; everything behind it was skipped",
+         "this comment is not closed; everything after it was skipped",
          depth == 1 ? "close it with `" + closing + '`'
                     : "comments nest: " + std::to_string(depth) + " times `" + closing +
                           "` are missing for `" + std::string(opening) + '`');
@@ -77,7 +77,7 @@ void Scanner::skip_pragma() {
   if (end == std::string_view::npos) {
     at_ = text_.size();
     report(DiagnosticCode::kUnterminatedPragma, begin, begin + 1,
-           "this pragma is not closed; everything behind it was skipped", "close it with `}`");
+           "this pragma is not closed; everything after it was skipped", "close it with `}`");
     return;
   }
   at_ = end + 1;

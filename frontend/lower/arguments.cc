@@ -17,7 +17,7 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
     const Arg& arg = tree_.args[call.list.first + i];
     if (arg.name.empty()) {
       sema_.error(DiagnosticCode::kMixedArguments, arg.span,
-                  "an argument without a name behind one with a name", "name it too");
+                  "an argument without a name after one with a name", "name it too");
       return false;
     }
     good = bind_named(arg, callee, bindings) && good;

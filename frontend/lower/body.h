@@ -71,7 +71,7 @@ class Body {
 
   // --- __TRY (try.cc)
   struct TryScope {    // of a body that the current statement stands in
-    struct Exit {      // a way out that goes on behind the __FINALLY
+    struct Exit {      // a way out that goes on after the __FINALLY
       ir::BlockId to;  // invalid: out of the POU
       size_t tries;    // scopes that are around it
     };

@@ -1,4 +1,4 @@
-// Writes the instructions of one POU, block by block. Code behind a terminator goes
+// Writes the instructions of one POU, block by block. Code after a terminator goes
 // into blocks that nothing reaches; finish() removes those.
 #pragma once
 
@@ -20,7 +20,7 @@ class Builder {
   void start(ir::BlockId block);
   bool started(ir::BlockId block) const;
   ir::ValueId add_param(ir::BlockId block, ir::Scalar scalar);
-  // False behind a terminator.
+  // False after a terminator.
   bool reachable() const { return current_.valid(); }
 
   ir::ValueId constant(ir::Scalar scalar, uint64_t bits);
@@ -80,7 +80,7 @@ class Builder {
 
  private:
   ir::Inst& emit(ir::Op op, ir::Scalar scalar);
-  void end_block();  // behind its terminator
+  void end_block();  // after its terminator
   ir::ValueId result(ir::Inst& inst);
   ir::PlaceId intern(const ir::Place& place);
   void grow_place_table();

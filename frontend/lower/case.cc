@@ -31,7 +31,7 @@ struct Body::CaseTests {
 
 namespace {
 
-// Up to here one test behind the other is as good as a tree.
+// Up to here one test after the other is as good as a tree.
 constexpr size_t kLinearTests = 4;
 // A table has an entry for each value between its first label and its last: 8 bytes of code, where
 // a test takes 16.

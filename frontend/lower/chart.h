@@ -114,7 +114,7 @@ class ChartBody {
   Numbers entered_;  // by step
   Numbers left_;     // by step
   Numbers wanted_;   // by action: Q, with a final scan; of L, D, P
-  std::vector<ir::ValueId> late_;  // by action: its statements run behind those that end
+  std::vector<ir::ValueId> late_;  // by action: its statements run after those that end
   ir::ValueId early_;              // some action has its final scan, or runs by P0
 };
 

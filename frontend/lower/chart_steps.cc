@@ -109,7 +109,7 @@ bool ChartBody::asks_only(ExprId condition, uint32_t step) {
   }
 }
 
-// What is done for active steps alone, behind one test for several of them. The last ones come
+// What is done for active steps alone, after one test for several of them. The last ones come
 // first: most transitions lead on.
 void ChartBody::active_steps() {
   const uint32_t size = group_size(steps_.size());

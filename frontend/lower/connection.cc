@@ -1,5 +1,5 @@
 // PROGRAM p WITH t : T(in := g, out => h): inputs are copied before each scan of the
-// program, outputs behind it. The other side is named where the configuration stands.
+// program, outputs after it. The other side is named where the configuration stands.
 #include "frontend/lower/body.h"
 
 namespace frontend {

@@ -15,7 +15,7 @@ class StartCode {
   // Gives the references inside of `at` their values, where `init` says that they are unbound.
   void bind_references(const ir::Place& at, ir::TypeId type, ir::ConstId init);
 
-  // FB_Init of a new instance and of those in it, with these arguments, behind its references.
+  // FB_Init of a new instance and of those in it, with these arguments, after its references.
   void construct(const ir::Place& at, ir::TypeId type, Range32 args, base::SourceSpan span);
   // What a change does with an instance that has been made.
   void visit(const ir::Place& at, ir::TypeId type) { instance(at, type, {}, false); }

@@ -1,6 +1,6 @@
 // __TRY ... __CATCH(e) ... __FINALLY ... __ENDTRY (docs/adr/0007-caught-traps.md). Whatever leaves
 // the body or the handler of a __TRY with a __FINALLY goes through that first: it notes where to
-// go on in a variable of the frame, and what is behind the __FINALLY looks there.
+// go on in a variable of the frame, and what is after the __FINALLY looks there.
 #include "base/limits.h"
 #include "frontend/lower/body.h"
 

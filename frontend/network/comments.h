@@ -15,7 +15,7 @@ struct Comment {
 // The comments in a text of Structured Text's tokens; strings are skipped.
 std::vector<Comment> comments_in(std::string_view text);
 
-// Where a comment that begins at `at` ends, behind its mark; `at` when none begins there. One
+// Where a comment that begins at `at` ends, after its mark; `at` when none begins there. One
 // that is never closed ends with the text.
 size_t comment_end(std::string_view text, size_t at);
 

@@ -183,7 +183,7 @@ std::string BoxText::list(const std::vector<std::string>& inputs, bool with_enab
   return out;
 }
 
-// Behind `v :=`: a call, or what a MOVE has at its input.
+// After `v :=`: a call, or what a MOVE has at its input.
 std::string BoxText::value() const {
   std::string call = block_.type.text + '(' + list(inputs_, false) + ')';
   if (!ir::same_name(block_.type.text, "MOVE") || !enabled_ || inputs_.size() != 1) return call;

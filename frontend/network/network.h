@@ -7,7 +7,7 @@
 // as written, with the place where they stand in a SourceMap (invalid when they stand in none).
 // Whatever a reader finds is well-formed here: links name existing elements and outputs,
 // `elements` are in the order of execution (network/order.h), so a link to an element at or
-// behind the own one is feedback: it carries the value of the last evaluation.
+// after the own one is feedback: it carries the value of the last evaluation.
 #pragma once
 
 #include <cstdint>

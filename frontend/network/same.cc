@@ -118,7 +118,7 @@ uint32_t Printer::read_behind(const Element& contact) const {
 }
 
 void Printer::note_written(const Element& element) {
-  // Behind a jump an edge may not see its operand.
+  // After a jump an edge may not see its operand.
   bool leaves = element.kind == Kind::kJump || element.kind == Kind::kReturn;
   if (leaves) unknown_ = done_;
   if (leaves) return;

@@ -13,8 +13,8 @@ namespace frontend::network {
 // elements that write something, pins that nothing is connected to, and rails. Contacts without
 // use are left out.
 //
-// A contact is read behind what was done before it. With kExact it has to stay there; with kAsRead
-// only behind what may have written its operand: a coil or variable of that name, a box that is not
+// A contact is read after what was done before it. With kExact it has to stay there; with kAsRead
+// only after what may have written its operand: a coil or variable of that name, a box that is not
 // a MOVE, anything through `^` or at an address. Other names of the same memory (AT, references)
 // are not seen.
 enum class Timing : uint8_t { kExact, kAsRead };

@@ -75,7 +75,7 @@ class Writer {
   std::vector<uint32_t> written_;  // by element: those before it that write something
   std::vector<uint32_t> users_;    // how many inputs use it
   std::vector<uint32_t> last_user_;
-  // What is known of power behind an element; of a contact that is used at once, its operands.
+  // What is known of power after an element; of a contact that is used at once, its operands.
   std::vector<std::vector<Value>> terms_;
   std::vector<std::string> wires_;                                      // of boxes of functions
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, Value> joints_;  // wires of ORs, by links

@@ -78,7 +78,7 @@ class AddressMap {
                          " already, by another attribute");
   }
 
-  // `channel`: what stands behind the module's own fields, at least one.
+  // `channel`: what stands after the module's own fields, at least one.
   bool place(const Begins::value_type& module, Range32 channel, ir::DirectAddress& address,
              base::SourceSpan span) {
     const uint32_t* at = &tree_.levels[channel.first];
@@ -88,11 +88,11 @@ class AddressMap {
     bit += module.second;
     const char* problem = nullptr;
     if (channel.count > 2 || (channel.count == 2 && !with_byte)) {
-      problem = "has more fields behind its module than a channel";
+      problem = "has more fields after its module than a channel";
     } else if (with_byte && at[1] > 7) {
       problem = "names a bit of a byte above 7";
     } else if (bit + address.bit_size > kMaxBits) {
-      problem = "lies behind the end of the process image";
+      problem = "lies after the end of the process image";
     }
     if (problem != nullptr) {
       diagnostics_.add(

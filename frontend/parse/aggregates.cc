@@ -4,7 +4,7 @@
 
 namespace frontend {
 
-// Behind a base type: `(A, ...`, `(A)`, `(A := ...` are literals, anything else a subrange.
+// After a base type: `(A, ...`, `(A)`, `(A := ...` are literals, anything else a subrange.
 bool Parser::at_enumerators() const {
   TokenKind behind = peek(2).kind;
   return is_name(peek(1).kind) &&
@@ -12,7 +12,7 @@ bool Parser::at_enumerators() const {
           behind == TokenKind::kAssign);
 }
 
-// `(A, B := 5)`, with the base type in front (`base`) or behind.
+// `(A, B := 5)`, with the base type in front (`base`) or after.
 SpecId Parser::parse_enum(SpecId base, base::SourcePos begin) {
   const Token open = take();
   Spec spec;

@@ -32,7 +32,7 @@ void Parser::parse_assignment(ExprId target, AssignOp op, base::SourcePos begin)
   add_statement(stmt);
 }
 
-// What stands behind an assignment operator: a value, or the rest of a chain.
+// What stands after an assignment operator: a value, or the rest of a chain.
 ExprId Parser::parse_assigned() {
   ExprId left = parse_listed_value();
   auto op = assign_op_here();

@@ -8,7 +8,7 @@ void Parser::parse_case() {
   Stmt stmt;
   stmt.kind = StmtKind::kCase;
   stmt.value = parse_expression();
-  parse_head(TokenKind::kOf, "behind the value of CASE");
+  parse_head(TokenKind::kOf, "after the value of CASE");
   stmt.span = span_from({opening.begin});
   ++open_[static_cast<uint8_t>(TokenKind::kEndCase)];
   size_t mark = case_stack_.size();
@@ -42,7 +42,7 @@ void Parser::parse_case_arm() {
   CaseArm arm;
   base::SourcePos begin = here();
   arm.labels = parse_case_labels();
-  if (!panic_) expect(TokenKind::kColon, "behind the labels of CASE");
+  if (!panic_) expect(TokenKind::kColon, "after the labels of CASE");
   if (panic_) {
     skip_to(TokenKind::kColon);
     if (!accept(TokenKind::kColon)) accept(TokenKind::kSemicolon);
@@ -64,7 +64,7 @@ Range32 Parser::parse_case_labels() {
   return move_tail(label_stack_, mark, tree_.labels);
 }
 
-// Statements never begin with a literal. A name begins a label when, behind its
+// Statements never begin with a literal. A name begins a label when, after its
 // members, `:`, `,` or `..` follows; `A + 1:` needs a look at the whole line.
 bool Parser::at_case_label() const {
   switch (kind()) {

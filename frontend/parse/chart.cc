@@ -81,7 +81,7 @@ void Parser::parse_step(Chart& chart) {
   const Token opening = take();
   step.initial = opening.kind == TokenKind::kInitialStep;
   step.name = parse_name("step");
-  if (!panic_) expect(TokenKind::kColon, "behind the name of the step");
+  if (!panic_) expect(TokenKind::kColon, "after the name of the step");
   panic_ = false;
   while (!step_ends()) {
     if (!accept(TokenKind::kSemicolon)) parse_action_use(step);
@@ -113,7 +113,7 @@ void Parser::parse_action_use(ChartStep& step) {
   target.span = use.span;
   use.target = add_expression(target);
   const Token open = *current_;
-  if (expect(TokenKind::kLeftParen, "behind the name of the action")) {
+  if (expect(TokenKind::kLeftParen, "after the name of the action")) {
     parse_qualifier(use);
     while (!panic_ && accept(TokenKind::kComma)) {
       ExprId indicator = parse_expression();
@@ -150,7 +150,7 @@ void Parser::parse_qualifier(ActionUse& use) {
 void Parser::parse_action_time(ActionUse& use, const Name& word) {
   if (!accept(TokenKind::kComma)) {
     report(Code::kBadActionTime, word.span,
-           "`" + std::string(word.text) + "` needs a time behind it",
+           "`" + std::string(word.text) + "` needs a time after it",
            "write for example " + std::string(word.text) + ", T#5s");
     return;
   }
@@ -189,7 +189,7 @@ void Parser::parse_transition_head(ChartTransition& transition) {
       return report_here(Code::kExpected, "expected PRIORITY, found " + describe(*current_));
     }
     take();
-    if (!expect(TokenKind::kAssign, "behind PRIORITY")) return;
+    if (!expect(TokenKind::kAssign, "after PRIORITY")) return;
     const Expr& number = tree_[parse_expression()];
     bool good = number.kind == ExprKind::kLiteral;
     if (good) {
@@ -213,7 +213,7 @@ void Parser::parse_transition_head(ChartTransition& transition) {
   }
   take();
   parse_step_names(transition.from);
-  if (!panic_ && expect(TokenKind::kTo, "behind the steps that this transition leaves")) {
+  if (!panic_ && expect(TokenKind::kTo, "after the steps that this transition leaves")) {
     parse_step_names(transition.to);
   }
 }
@@ -251,7 +251,7 @@ void Parser::parse_transition_condition(ChartTransition& transition) {
   finish_declaration("condition");
 }
 
-// Behind the last element of a POU's body.
+// After the last element of a POU's body.
 void Parser::finish_chart(PouDecl& pou) {
   if (pou.chart == kNoChart) return;
   for (uint32_t i = 0; i < pou.body.count; ++i) {

@@ -47,7 +47,7 @@ struct ChartStep {
 struct ChartTransition {
   Name name;  // may be empty
   bool has_priority = false;
-  uint32_t priority = 0;  // the lowest number goes first; those without come behind
+  uint32_t priority = 0;  // the lowest number goes first; those without come after
   std::vector<Name> from;
   std::vector<Name> to;
   ExprId condition;       // invalid when damaged

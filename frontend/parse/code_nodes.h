@@ -126,7 +126,7 @@ struct Arg {
   Name name;             // empty: positional
   bool output = false;   // name => expr
   bool negated = false;  // NOT name => expr
-  ExprId value;          // invalid: `name :=` or `name =>` with nothing behind it
+  ExprId value;          // invalid: `name :=` or `name =>` with nothing after it
   base::SourceSpan span;
 };
 

@@ -105,7 +105,7 @@ TaskDecl Parser::parse_task() {
   base::SourcePos begin = {take().begin};
   task.name = parse_name("task");
   const Token open = *current_;
-  if (!panic_ && expect(TokenKind::kLeftParen, "behind the name of the task")) {
+  if (!panic_ && expect(TokenKind::kLeftParen, "after the name of the task")) {
     do {
       parse_task_parameter(task);
     } while (!panic_ && accept(TokenKind::kComma));
@@ -130,7 +130,7 @@ void Parser::parse_task_parameter(TaskDecl& task) {
   if (place->valid()) {
     note_only(Code::kBadTaskParameter, name.span(), describe(name) + " is given twice");
   }
-  if (expect(TokenKind::kAssign, "behind the task parameter")) *place = parse_expression();
+  if (expect(TokenKind::kAssign, "after the task parameter")) *place = parse_expression();
 }
 
 // PROGRAM [RETAIN] name [WITH task] : type [(in := g, out => h, fb WITH task)];

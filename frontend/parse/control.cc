@@ -4,7 +4,7 @@
 
 namespace frontend {
 
-// The word behind a statement's head. Where it is missing, the head ends at the line's end.
+// The word after a statement's head. Where it is missing, the head ends at the line's end.
 void Parser::parse_head(TokenKind keyword, const char* where) {
   if (!panic_ && accept(keyword)) return;
   expect(keyword, where);
@@ -21,7 +21,7 @@ Range32 Parser::parse_body(TokenKind end) {
   return body;
 }
 
-// Real sources leave out the semicolon behind END_x, so it is optional.
+// Real sources leave out the semicolon after END_x, so it is optional.
 void Parser::close_statement(const Token& opening, TokenKind end) {
   if (!accept(end)) return report_missing_end(opening, end);
   accept(TokenKind::kSemicolon);
@@ -31,7 +31,7 @@ void Parser::close_statement(const Token& opening, TokenKind end) {
 base::SourcePos Parser::parse_branch() {
   Branch branch;
   branch.condition = parse_condition();
-  parse_head(TokenKind::kThen, "behind the condition");
+  parse_head(TokenKind::kThen, "after the condition");
   base::SourcePos head_end = last_end();
   branch.body = parse_body(TokenKind::kEndIf);
   branch_stack_.push_back(branch);
@@ -51,8 +51,8 @@ void Parser::parse_if() {
         else_if || (token.kind == TokenKind::kElse && kind() == TokenKind::kIf && !on_new_line());
     if (stmt.has_else) {
       note_only(Code::kUnexpectedEnd, token.span(),
-                describe(token) + " stands behind the ELSE of the same IF",
-                "put ELSE behind all ELSIF branches, and only one");
+                describe(token) + " stands after the ELSE of the same IF",
+                "put ELSE after all ELSIF branches, and only one");
     }
     if (token.kind == TokenKind::kElsif) {
       parse_branch();
@@ -81,14 +81,14 @@ void Parser::parse_for() {
               "write `:=` to assign");
     take();
   } else if (!panic_) {
-    expect(TokenKind::kAssign, "behind the variable of FOR");
+    expect(TokenKind::kAssign, "after the variable of FOR");
   }
   if (!panic_) stmt.from = parse_expression();
-  if (!panic_) expect(TokenKind::kTo, "behind the first value of FOR");
+  if (!panic_) expect(TokenKind::kTo, "after the first value of FOR");
   if (!panic_) stmt.to = parse_expression();
   if (!panic_ && accept(TokenKind::kBy)) stmt.by = parse_expression();
   bool damaged = panic_;
-  parse_head(TokenKind::kDo, "behind the head of FOR");
+  parse_head(TokenKind::kDo, "after the head of FOR");
   if (damaged && !stmt.from.valid()) stmt.from = error_expression();
   if (damaged && !stmt.to.valid()) stmt.to = error_expression();
   stmt.span = span_from({opening.begin});
@@ -102,7 +102,7 @@ void Parser::parse_while() {
   Stmt stmt;
   stmt.kind = StmtKind::kWhile;
   stmt.value = parse_condition();
-  parse_head(TokenKind::kDo, "behind the condition");
+  parse_head(TokenKind::kDo, "after the condition");
   stmt.span = span_from({opening.begin});
   stmt.body = parse_body(TokenKind::kEndWhile);
   add_statement(stmt);

@@ -85,7 +85,7 @@ void Parser::parse_file_pou(PouKind pou_kind, Range32 attributes) {
   }
 }
 
-// Exported sources write methods and actions behind the POU that they belong to.
+// Exported sources write methods and actions after the POU that they belong to.
 void Parser::parse_outside_member(Range32 attributes) {
   bool owned = owner_ != kNoOwner && takes_members(tree_.pous[owner_].kind);
   if (owned) {
@@ -94,8 +94,8 @@ void Parser::parse_outside_member(Range32 attributes) {
   }
   note_only(
       Code::kMisplacedMember, current_->span(),
-      describe(*current_) + " stands outside of a POU, and behind none that it could belong to",
-      "move it into its FUNCTION_BLOCK, CLASS or PROGRAM, or behind it");
+      describe(*current_) + " stands outside of a POU, and after none that it could belong to",
+      "move it into its FUNCTION_BLOCK, CLASS or PROGRAM, or after it");
   PouDecl dropped;
   parse_member(dropped, attributes);
 }

@@ -36,7 +36,7 @@ void Parser::Diagram::run(const network::Body& body) {
   network::report_suspicious(body, p_.diagnostics_);
   for (const network::Network& each : body.networks) network(each);
   if (kept_.vars.empty()) return;
-  // The variables of a call are gone behind it; these live in the instance.
+  // The variables of a call are gone after it; these live in the instance.
   const bool call = pou_.kind == PouKind::kMethod || pou_.kind == PouKind::kGetter ||
                     pou_.kind == PouKind::kSetter;
   kept_.section = call ? VarSection::kInstance : VarSection::kLocal;

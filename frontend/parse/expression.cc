@@ -63,7 +63,7 @@ ExprId Parser::parse_condition() {
 
 ExprId Parser::parse_binary(uint32_t above) { return parse_operators(parse_unary(), above); }
 
-// The operators behind `left` that bind more tightly than `above`.
+// The operators after `left` that bind more tightly than `above`.
 ExprId Parser::parse_operators(ExprId left, uint32_t above) {
   while (operator_of(kind()).precedence > above) {
     const Token op = take();

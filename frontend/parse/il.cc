@@ -90,7 +90,7 @@ void Parser::InstructionList::instruction() {
   } else {
     p_.report_here(Code::kBadInstruction,
                    "an instruction begins with its operator, found " + p_.describe(first),
-                   "write LD, ST, AND, ... and behind it the operand");
+                   "write LD, ST, AND, ... and after it the operand");
     p_.take();
   }
   finish_row(in);
@@ -281,7 +281,7 @@ void Parser::InstructionList::report_unclosed(base::SourceSpan where) {
   base::Diagnostic diagnostic{Code::kUnclosedBracket,
                               parentheses_.back().span(),
                               "`)` is missing for this parenthesis",
-                              "write `)` in a row of its own behind the last instruction inside",
+                              "write `)` in a row of its own after the last instruction inside",
                               {}};
   diagnostic.notes.push_back({where, "it was expected before this"});
   if (!p_.panic_) p_.diagnostics_.add(std::move(diagnostic));

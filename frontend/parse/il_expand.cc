@@ -20,7 +20,7 @@ void Parser::InstructionList::expand(size_t i) {
       if (result_.state == Result::State::kNone) use(in, false);
       outer_.push_back(result_);
       opens_.push_back(i);
-      return undefine("nothing is loaded yet behind the parenthesis");
+      return undefine("nothing is loaded yet after the parenthesis");
     case Kind::kClose:
       return close(i);
     case Kind::kFunction:

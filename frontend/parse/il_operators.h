@@ -53,7 +53,7 @@ struct IlTokens {
   // An operator with what it needs: an operand, a parenthesis, or the end of the row.
   bool is_instruction(size_t i) const;
   // Is the body whose first token is `i` an instruction list? It is when its first instruction,
-  // behind labels, has an operator of this language, which no statement of Structured Text can
+  // after labels, has an operator of this language, which no statement of Structured Text can
   // begin with; or when calls and unknown words fill the rows in front of such an instruction and
   // neither `;` nor `:=` ends or makes a statement of them.
   bool is_instruction_list(size_t i) const;

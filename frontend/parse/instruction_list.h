@@ -3,7 +3,7 @@
 // one instruction uses it; where several do, or a label takes it over, it becomes a kResult,
 // assigned where it was computed. Everything here is syntax: types are sema's.
 //
-// il_flow.cc says behind which instructions the current result is still needed. Cost is linear
+// il_flow.cc says after which instructions the current result is still needed. Cost is linear
 // in the instructions.
 #pragma once
 
@@ -28,7 +28,7 @@ class Parser::InstructionList {
     kOperator,
     kOpen,      // operator and `(`
     kClose,     // its `)`
-    kFunction,  // with operands behind the current result
+    kFunction,  // with operands after the current result
     kCall,      // f(x := 1): operand is the call
     kLabel,
     kDamaged,  // reported
@@ -125,7 +125,7 @@ class Parser::InstructionList {
   Parser& p_;
   Tree& tree_;
   std::vector<Instruction> list_;
-  std::vector<Need> needs_;  // in front of each instruction, and behind the last
+  std::vector<Need> needs_;  // in front of each instruction, and after the last
   std::unordered_map<std::string, Label> labels_;  // by folded name
   std::vector<Token> parentheses_;                 // open while reading
   bool value_only_ = false;                        // inside of an argument or condition

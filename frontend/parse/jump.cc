@@ -69,7 +69,7 @@ void Parser::parse_try() {
     bool is_catch = part.kind == TokenKind::kCatch;
     if ((is_catch ? stmt.has_catch : stmt.has_finally) || (is_catch && stmt.has_finally)) {
       note_only(Code::kUnexpectedEnd, part.span(),
-                describe(part) + " stands here a second time, or behind __FINALLY",
+                describe(part) + " stands here a second time, or after __FINALLY",
                 "write __TRY ... __CATCH(e) ... __FINALLY ... __ENDTRY");
     }
     if (is_catch) stmt.has_catch = true;

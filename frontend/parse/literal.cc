@@ -110,7 +110,7 @@ ExprId Parser::parse_typed_literal() {
   if (!sign && other_literal) return parse_literal(prefix, begin, false);
   if (!is_name(kind())) {
     report(Code::kBadTypedLiteral, span_from(begin),
-           "a literal or the name of an enumeration literal belongs behind " + describe(token) +
+           "a literal or the name of an enumeration literal belongs after " + describe(token) +
                ", found " + describe(*current_));
     return error_expression();
   }

@@ -40,7 +40,7 @@ void Parser::parse_property(PouDecl& owner, Range32 attributes) {
   head.scope = owner.scope;
   parse_specifiers(head);
   head.name = parse_name("property");
-  if (!panic_ && expect(TokenKind::kColon, "behind the name of the property")) {
+  if (!panic_ && expect(TokenKind::kColon, "after the name of the property")) {
     head.result = parse_spec();
   }
   if (panic_) {

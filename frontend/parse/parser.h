@@ -88,7 +88,7 @@ class Parser {
   Range32 take_attributes();
   void add_attribute(base::SourceSpan span);
   void report_lost_rule(base::SourceSpan span);
-  void report_lost_rules();  // those behind the last declaration
+  void report_lost_rules();  // those after the last declaration
   Range32 join_attributes(Range32 a, Range32 b);
 
   class Nesting;
@@ -126,7 +126,7 @@ class Parser {
   uint32_t height(ExprId id) const { return id.valid() ? tree_[id].height : 0; }
 
   // --- postfix.cc
-  ExprId parse_variable();  // name or direct address with everything behind it
+  ExprId parse_variable();  // name or direct address with everything after it
   ExprId parse_postfix(ExprId operand);
   ExprId parse_member(ExprId operand);
   void set_direct(Expr& expr, const Token& token);
@@ -354,7 +354,7 @@ class Parser {
   uint32_t depth_ = 0;
   size_t next_pragma_ = 0;
   ScopeId scope_;
-  uint32_t owner_ = kNoOwner;         // the POU that a member behind it belongs to
+  uint32_t owner_ = kNoOwner;         // the POU that a member after it belongs to
   std::array<uint16_t, 256> open_{};  // open statements, by the TokenKind of their end
 
   // Lists under construction; nested constructs work above their opener's mark.

@@ -174,7 +174,7 @@ void Parser::parse_inheritance(PouDecl& pou) {
     } else if (block && pou.extends.size() > 1) {
       note_only(Code::kBadInheritance, tree_[pou.extends[1]].span,
                 "a function block or class has one base only",
-                "give the others as INTERFACE behind IMPLEMENTS");
+                "give the others as INTERFACE after IMPLEMENTS");
     }
   }
 }
@@ -186,7 +186,7 @@ void Parser::parse_pou_variables(PouDecl& pou) {
     if (kind() == TokenKind::kUsing && is_name(next_kind())) {
       parse_using(pou.usings);
     } else if (at_var_block()) {
-      // Behind a POU whose end is missing, VAR_GLOBAL begins something new.
+      // After a POU whose end is missing, VAR_GLOBAL begins something new.
       bool foreign = kind() == TokenKind::kVarConfig ||
                      (kind() == TokenKind::kVarGlobal && pou.kind != PouKind::kProgram);
       if (foreign) return;
@@ -233,7 +233,7 @@ void Parser::parse_pou_body(PouDecl& pou) {
       if (drawn && kind() != TokenKind::kSemicolon) report_mixed_body();
       bool first = statement_stack_.size() == mark;
       first&& at_instruction_list() ? InstructionList(*this).body() : parse_statement();
-    } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // behind a stray END_x
+    } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // after a stray END_x
       break;
     }
   }

@@ -42,7 +42,7 @@ bool Parser::has_open_string(const Token& opening) const {
 // At the opening keyword, whose place is certain; where the end was missed is a note.
 void Parser::report_missing_end(const Token& opening, TokenKind end, std::string fix) {
   std::string closing(token_text(end));
-  if (fix.empty()) fix = "write `" + closing + "` behind the last line that belongs to it";
+  if (fix.empty()) fix = "write `" + closing + "` after the last line that belongs to it";
   base::Diagnostic diagnostic{Code::kMissingEnd,
                               opening.span(),
                               describe(opening) + " has no `" + closing + '`',
@@ -73,12 +73,12 @@ bool Parser::swallowed_by_string() const {
   return string.size() < 2 || string.back() != string.front();
 }
 
-// Behind the last token, not at the next one, which may be many lines below.
+// After the last token, not at the next one, which may be many lines below.
 void Parser::report_missing_semicolon(const char* what) {
   if (swallowed_by_string()) return;
   base::SourcePos end = last_end();
   note_only(Code::kMissingSemicolon, {end, {end.offset + 1}},
-            std::string("`;` is missing behind this ") + what, "write `;` here");
+            std::string("`;` is missing after this ") + what, "write `;` here");
 }
 
 void Parser::not_supported(base::SourceSpan span, const std::string& what, std::string fix) {

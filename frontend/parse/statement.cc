@@ -146,7 +146,7 @@ void Parser::finish_simple(ExprId left, base::SourcePos begin) {
              "this is no statement: nothing is assigned or called",
              "write `:=` and a value, or `()` to call");
     } else {
-      report_here(Code::kExpected, "expected `:=` or `(` behind " + describe(current_[-1]) +
+      report_here(Code::kExpected, "expected `:=` or `(` after " + describe(current_[-1]) +
                                        ", found " + describe(*current_));
     }
     Stmt stmt;

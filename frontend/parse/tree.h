@@ -177,7 +177,7 @@ struct PouDecl {
   uint32_t chart = kNoChart;      // Tree::charts: the body is that chart, `body` is empty
   uint32_t diagram = kNoDiagram;  // Tree::diagrams: what `body` was made of
   base::SourceSpan span;          // PROGRAM ... END_PROGRAM
-  // From the last word in front of the statements to the word behind them; invalid where other
+  // From the last word in front of the statements to the word after them; invalid where other
   // things than statements stand between them.
   base::SourceSpan code = {};
   Access access = Access::kDefault;

@@ -50,7 +50,7 @@ void Parser::parse_type(Range32 attributes) {
   SpecId base;
   Token extends = *current_;
   if (!panic_ && accept(TokenKind::kExtends)) base = parse_type_name();
-  if (!panic_ && !expect(TokenKind::kColon, "behind the name of the type")) {
+  if (!panic_ && !expect(TokenKind::kColon, "after the name of the type")) {
     panic_ = kind() != TokenKind::kStruct && kind() != TokenKind::kArray;
   }
   if (panic_) return skip_to_declaration_end();
@@ -139,7 +139,7 @@ void Parser::parse_qualified(Range32& qualifiers, Name& name) {
 }
 
 // `INT`, `INT (0..10)`, `INT (Off, On)`, `Pump (5)`. A type other than the elementary ones
-// has literals behind it only where a TYPE is declared.
+// has literals after it only where a TYPE is declared.
 SpecId Parser::parse_named_spec(bool type_level) {
   base::SourcePos begin = here();
   SpecId id = parse_type_name();
@@ -224,7 +224,7 @@ SpecId Parser::parse_array_spec() {
   Spec spec;
   spec.kind = SpecKind::kArray;
   const Token open = *current_;
-  if (!expect(TokenKind::kLeftBracket, "behind ARRAY")) return error_spec(begin);
+  if (!expect(TokenKind::kLeftBracket, "after ARRAY")) return error_spec(begin);
   spec.open_bounds = kind() == TokenKind::kStar;
   do {
     DimSpec dim;
@@ -236,7 +236,7 @@ SpecId Parser::parse_array_spec() {
     spec.dims.push_back(dim);
   } while (!panic_ && accept(TokenKind::kComma));
   close_bracket(TokenKind::kRightBracket, open);
-  if (!panic_) expect(TokenKind::kOf, "behind the bounds");
+  if (!panic_) expect(TokenKind::kOf, "after the bounds");
   if (panic_) return error_spec(begin);
   spec.element = parse_spec();
   if (kind() == TokenKind::kLeftBracket && next_kind() == TokenKind::kLeftParen) {
@@ -246,7 +246,7 @@ SpecId Parser::parse_array_spec() {
   return add_spec(std::move(spec));
 }
 
-// Behind POINTER or REFERENCE: TO, or the type itself when TO is forgotten.
+// After POINTER or REFERENCE: TO, or the type itself when TO is forgotten.
 bool Parser::at_reference() const {
   TokenKind next = next_kind();
   return next == TokenKind::kTo || next == TokenKind::kArray || is_name(next);
@@ -259,7 +259,7 @@ SpecId Parser::parse_reference(SpecKind reference) {
   base::SourcePos begin = {take().begin};
   if (reference != SpecKind::kRefTo && !accept(TokenKind::kTo)) {
     note_only(Code::kExpected, current_->span(),
-              "expected `TO` behind " + describe(current_[-1]) + ", found " + describe(*current_));
+              "expected `TO` after " + describe(current_[-1]) + ", found " + describe(*current_));
   }
   spec.element = parse_spec();
   spec.span = span_from(begin);

@@ -159,10 +159,10 @@ void Parser::parse_variable_declaration() {
   }
   parse_location(decl);
   if (!panic_ && kind() == TokenKind::kAssign) {
-    report_here(Code::kExpected, "a declaration needs a type: expected `:` behind the name",
+    report_here(Code::kExpected, "a declaration needs a type: expected `:` after the name",
                 "write `name : type := value;`");
   }
-  if (!panic_) expect(TokenKind::kColon, "behind the name of the variable");
+  if (!panic_) expect(TokenKind::kColon, "after the name of the variable");
   if (panic_) return skip_to_declaration_end();
   decl.spec = parse_spec();
   decl.edge = parse_edge();
@@ -179,7 +179,7 @@ void Parser::parse_location(VarDecl& decl) {
   if (kind() != TokenKind::kDirect) {
     return report_here(
         Code::kBadDirectAddress,
-        "a direct address such as %QX0.0 belongs behind AT, found " + describe(*current_));
+        "a direct address such as %QX0.0 belongs after AT, found " + describe(*current_));
   }
   DecodedAddress decoded = parse_direct_address(take());
   decl.has_address = !decoded.problem;
@@ -199,9 +199,9 @@ void Parser::parse_access_path() {
   decl.attributes = take_attributes();
   base::SourcePos begin = here();
   decl.names.push_back(parse_name("access path"));
-  if (!panic_) expect(TokenKind::kColon, "behind the name of the access path");
+  if (!panic_) expect(TokenKind::kColon, "after the name of the access path");
   if (!panic_) decl.path = parse_primary();
-  if (!panic_) expect(TokenKind::kColon, "behind the variable that is opened");
+  if (!panic_) expect(TokenKind::kColon, "after the variable that is opened");
   if (panic_) {
     if (!is_closing(kind())) take();
     return skip_to_declaration_end();
@@ -220,7 +220,7 @@ void Parser::parse_config_variable() {
   base::SourcePos begin = here();
   decl.path = parse_primary();
   if (!panic_) parse_location(decl);
-  if (!panic_) expect(TokenKind::kColon, "behind the path of the variable");
+  if (!panic_) expect(TokenKind::kColon, "after the path of the variable");
   if (panic_) {
     if (!is_closing(kind())) take();
     return skip_to_declaration_end();
@@ -253,7 +253,7 @@ void Parser::finish_declaration(const char* what) {
   if (accept(TokenKind::kSemicolon)) return;
   bool block_end = current_ != first_ && (current_[-1].kind == TokenKind::kEndStruct ||
                                           current_[-1].kind == TokenKind::kEndUnion);
-  if (block_end) return;  // real sources leave the semicolon out behind END_x
+  if (block_end) return;  // real sources leave the semicolon out after END_x
   report_missing_semicolon(what);
   if (!on_new_line() && !is_statement_boundary(kind())) skip_to_declaration_end();
 }

@@ -83,14 +83,14 @@ void Sema::add_instance_variable(Variable variable, PouInfo& method) {
   pous[method.owner].variables.push_back(id);
 }
 
-// Behind the globals that are there.
+// After the globals that are there.
 void Sema::place_global(VarId id) {
   if (!declared_) {
     variables_[id.index].index = static_cast<uint32_t>(global_order_.size());
     global_order_.push_back(id);
     return;
   }
-  // The globals are laid out already: bare addresses may stand behind them.
+  // The globals are laid out already: bare addresses may stand after them.
   variables_[id.index].index = static_cast<uint32_t>(program.types[program.globals].members.size());
   const Variable& resolved = resolve(id);
   ir::Member member = member_of(resolved, ir::Section::kGlobal);

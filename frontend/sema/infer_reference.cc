@@ -76,7 +76,7 @@ Note Sema::infer_deref(const Expr& expr) {
   return note;
 }
 
-// p[i] is the i-th value behind the pointer; nothing but the area bounds i.
+// p[i] is the i-th value after the pointer; nothing but the area bounds i.
 Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
   Note note;
   if (expr.list.count != 1) {

@@ -66,7 +66,7 @@ bool Sema::check_result(const Stmt& stmt) {
   error(DiagnosticCode::kResultsDiffer, stmt.span,
         "the current result is `" + type_text(given) + "` here and `" + type_text(wanted) +
             "` on another way to the same label",
-        "convert one of them, or load the operand behind the label");
+        "convert one of them, or load the operand after the label");
   return false;
 }
 

@@ -23,7 +23,7 @@ void Objects::inherit() {
   for (uint32_t i = 0; i < sema_.pous.size(); ++i) inherit(i, 0);
 }
 
-// The block or interface that a name behind EXTENDS or IMPLEMENTS means; reports.
+// The block or interface that a name after EXTENDS or IMPLEMENTS means; reports.
 uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interface) {
   if (is_query_interface(sema_.tree, sema_.tree[spec])) return kNoPou;
   Sema::Within scope(sema_, info.number);
@@ -63,7 +63,7 @@ bool Objects::finish_ancestor(const PouInfo& info, uint32_t ancestor, SpecId spe
   }
   if (length <= base::kMaxNesting) return true;
   sema_.error(DiagnosticCode::kTooDeep, sema_.tree[spec].span,
-              "more than " + std::to_string(base::kMaxNesting) + " bases behind each other");
+              "more than " + std::to_string(base::kMaxNesting) + " bases after each other");
   return false;
 }
 

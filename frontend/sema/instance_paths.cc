@@ -237,7 +237,7 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
   instance.init = configure(instance.init, instance.type);
 }
 
-// `before` with another value behind `steps`.
+// `before` with another value after `steps`.
 ir::ConstId InstancePaths::with_initial(ir::ConstId before, ir::TypeId type,
                                         const std::vector<uint32_t>& steps, size_t at,
                                         ExprId init) {

@@ -66,7 +66,7 @@ Callee Objects::itself(const Expr& head) {
   return callee;
 }
 
-// A variable, property or method of an instance, or behind an interface.
+// A variable, property or method of an instance, or after an interface.
 Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   const bool own = is_own(sema_.tree[expr.operand]);
   const PouInfo& block = sema_.pous[owner];

@@ -13,9 +13,9 @@ class Migrations {
  public:
   explicit Migrations(Sema& sema) : sema_(sema) {}
 
-  // Behind all interfaces: fills Program::migrations.
+  // After all interfaces: fills Program::migrations.
   void collect();
-  // Behind all bodies: nothing but parameters and locals is read and written.
+  // After all bodies: nothing but parameters and locals is read and written.
   void check_code();
 
  private:

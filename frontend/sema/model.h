@@ -243,7 +243,7 @@ struct PouInfo {
   uint32_t number = 0;  // in Sema::pous
   const PouDecl* decl = nullptr;
   std::string_view name;           // qualified: A.B.Pump; of a method: its own
-  const PouDecl* setup = nullptr;  // of a TEST: runs before and behind its body
+  const PouDecl* setup = nullptr;  // of a TEST: runs before and after its body
   const PouDecl* teardown = nullptr;
   bool as_block = false;  // a PROGRAM in a build for tests, which have instances of it
   bool test = false;  // a TEST, or a mock's body: it may use what is private

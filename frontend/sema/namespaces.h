@@ -46,7 +46,7 @@ class Namespaces {
   const GlobalList* list(const Expr& head);
   // Is `A.f` in code a name of a namespace, and of no variable there?
   bool declares(const Expr& expr);
-  // A list of globals or a namespace: what stands behind the dot is no member of a value.
+  // A list of globals or a namespace: what stands after the dot is no member of a value.
   bool is_scope(const Expr& head) { return list(head) != nullptr || is_namespace(head); }
   // Do several USINGs give this literal? Then its context decides, as among enumerations.
   bool is_ambiguous(const Name& literal) const {

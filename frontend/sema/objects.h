@@ -55,7 +55,7 @@ class Objects {
   // THIS, THIS^, SUPER, SUPER^: the own instance.
   bool is_own(const Expr& expr) const;
   bool is_super(const Expr& expr) const;
-  // The block or interface that the members behind `operand.` are of; kNoPou: it has no such,
+  // The block or interface that the members after `operand.` are of; kNoPou: it has no such,
   // or none that could be found out (then a message was given).
   uint32_t receiver(ExprId operand);
   // The base of the own block; reports when there is none.
@@ -83,7 +83,7 @@ class Objects {
   void add_start();
   // Does a variable of this type, with this initial value, need anything at the start?
   bool starts(ir::TypeId type, ir::ConstId init);
-  // How its author wrote the type: behind names of types, as long as they have no arguments.
+  // How its author wrote the type: after names of types, as long as they have no arguments.
   const Spec* construction(SpecId spec) const;
   // Are there instances in it that start code visits?
   bool constructs(ir::TypeId type);

@@ -21,7 +21,7 @@ class OldNames {
   // Of the type `name(instance)`, by the rules of the program and of its instance.
   ir::OldNameId of_clone(std::string_view name, std::string_view rule, std::string_view instance,
                          std::string_view instance_rule);
-  // Behind the resolution of all types. Only those with a name of their own can be renamed.
+  // After the resolution of all types. Only those with a name of their own can be renamed.
   void rename_types();
 
  private:

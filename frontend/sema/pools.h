@@ -31,7 +31,7 @@ class Pools {
  public:
   explicit Pools(Sema& sema) : sema_(sema) {}
 
-  // Behind all declarations: adds the variables, and the methods __RESET and __LEAVE to the blocks
+  // After all declarations: adds the variables, and the methods __RESET and __LEAVE to the blocks
   // that they need.
   void declare();
   const std::vector<Pool>& all() const { return pools_; }

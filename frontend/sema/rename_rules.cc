@@ -22,7 +22,7 @@ bool is_number(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// `.name`, `[1,-2]`, one behind the other.
+// `.name`, `[1,-2]`, one after the other.
 bool is_part(std::string_view text) {
   if (text.empty()) return false;
   while (!text.empty()) {

@@ -290,7 +290,7 @@ void SharedAddresses::make_structure(const Group& group) {
   std::set<decltype(place_key(Located()))> known;
   std::vector<std::pair<VarId, AddressView>> views;
   std::vector<std::pair<std::string, AddressView>> direct;
-  Group ordered = group;  // bits behind what they are parts of
+  Group ordered = group;  // bits after what they are parts of
   std::stable_partition(ordered.begin(), ordered.end(),
                         [](const Place& place) { return place.bits != 1; });
   for (const Place& place : ordered) {

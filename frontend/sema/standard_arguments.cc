@@ -12,7 +12,7 @@ struct Parameter {
   bool output = false;
 };
 
-// "IN1+" is IN1, IN2, ...: how far `name` is behind the first; -1: another name.
+// "IN1+" is IN1, IN2, ...: how far `name` is after the first; -1: another name.
 int32_t number_behind(std::string_view word, std::string_view name) {
   std::string_view stem = word.substr(0, word.size() - 2);
   if (name.size() <= stem.size() || name.size() > stem.size() + 3 ||

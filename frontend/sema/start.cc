@@ -26,7 +26,7 @@ bool has_arguments(const Tree& tree, SpecId id) {
 
 // What of a type decides how a variable of it is laid out; instances have areas of their own.
 std::string shape(const ir::TypeTable& types, ir::TypeId id) {
-  if (!id.valid()) return "?";  // behind an error that was said
+  if (!id.valid()) return "?";  // after an error that was said
   const ir::Type& type = types[id];
   if (type.kind == ir::Kind::kArray) {
     std::string text = "[";
@@ -89,7 +89,7 @@ void Objects::check_start_arguments(SpecId id, ir::TypeId type, std::vector<bool
               "write `:=` and a value, or (member := value)");
 }
 
-// Arguments stand behind the types of variables, members of structures and declared types, and
+// Arguments stand after the types of variables, members of structures and declared types, and
 // there has to be an FB_Init for them.
 void Objects::check_start_arguments() {
   std::vector<bool> good(sema_.tree.specs.size());

@@ -32,7 +32,7 @@ struct CallMeasure {
 };
 CallMeasure measure_calls(const std::vector<CallNode>& nodes);
 
-// Calls whose callee is known at run time only are edges to a node of their own, behind those of
+// Calls whose callee is known at run time only are edges to a node of their own, after those of
 // the POUs, which leads to everything that may run.
 class DynamicCalls {
  public:
@@ -43,7 +43,7 @@ class DynamicCalls {
   uint32_t any_body(TypeId type) const { return pous_ + type.index; }
   // CALL_VIRTUAL: what stands for the prototype in some type.
   uint32_t any_target(uint32_t prototype) const { return pous_ + types_ + prototype; }
-  // Behind `nodes`, one for each POU of the image; `pou_of_type`: bodies, by type number.
+  // After `nodes`, one for each POU of the image; `pou_of_type`: bodies, by type number.
   void add_nodes(const Image& image, const std::vector<uint32_t>& pou_of_type,
                  std::vector<CallNode>& nodes) const;
 

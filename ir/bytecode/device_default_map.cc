@@ -6,7 +6,7 @@ namespace ir {
 namespace {
 
 constexpr uint32_t kAllPoints = 65536;
-constexpr uint32_t kWords = 1024;  // holding registers for %QW, and as many behind them for %MW
+constexpr uint32_t kWords = 1024;  // holding registers for %QW, and as many after them for %MW
 
 void add(Device& device, PointTable table, uint32_t first, uint32_t count, bool to_device,
          DirectAddress at, bool writable = false) {

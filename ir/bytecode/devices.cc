@@ -159,10 +159,10 @@ class Checker {
       return fault(entry, name + " can only be read by others: use `<-`");
     }
     if (map.to_device && !output && !driver.server) {
-      return fault(entry, "`<-` sends to the device: only %Q can stand behind it");
+      return fault(entry, "`<-` sends to the device: only %Q can stand after it");
     }
     if (!map.to_device && !input) {
-      return fault(entry, "`->` comes from the device: only %I can stand behind it");
+      return fault(entry, "`->` comes from the device: only %I can stand after it");
     }
     // What a server's client can only read cannot come from there.
     const bool possible = driver.server   ? map.to_device || table.to_device

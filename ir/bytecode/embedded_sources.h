@@ -25,7 +25,7 @@ struct SourceFile {
 struct EmbeddedSources {
   std::vector<SourceFile> files;   // sorted by path; none: they do not travel
   std::vector<std::string> build;  // what `stc build` was told: `--name=plant`, paths of sources
-  base::Bytes packed;              // texts of all files, one behind the other (base/pack.h)
+  base::Bytes packed;              // texts of all files, one after the other (base/pack.h)
   bool none() const { return files.empty(); }
 };
 

@@ -142,7 +142,7 @@ base::Status split(base::ByteSpan bytes, Contents& contents, uint32_t& count) {
     contents[count] = in.blob();
     if (in.failed()) return bad_format(name_of(count) + " is cut off");
   }
-  if (!in.done()) return bad_format("bytes behind the last section");
+  if (!in.done()) return bad_format("bytes after the last section");
   return base::Ok{};
 }
 

@@ -234,7 +234,7 @@ class ImageReader {
     v = known;
     return true;
   }
-  // Behind bytes that are these; else where it was.
+  // After bytes that are these; else where it was.
   bool takes(base::ByteSpan bytes) {
     if (in_.left() < bytes.size()) return false;
     if (!std::equal(bytes.begin(), bytes.end(), content_.begin() + in_.at())) return false;

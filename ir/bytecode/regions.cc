@@ -67,7 +67,7 @@ struct LinearSearch {
   }
 };
 
-// The tree over `ends` finds members that reach behind an offset: node i has the furthest end of
+// The tree over `ends` finds members that reach after an offset: node i has the furthest end of
 // nodes 2 i and 2 i + 1; the leaves are as many as half of it.
 class Reaching {
  public:

@@ -21,7 +21,7 @@ bool ValueRanges::add_range(uint32_t data, uint32_t size) {
   return true;
 }
 
-// The areas behind the slots in a value of this type.
+// The areas after the slots in a value of this type.
 bool ValueRanges::instances(TypeId id, uint32_t data, uint32_t depth) {
   if (depth > base::kMaxNesting || !holds_instance(id, depth)) return true;
   const Type& type = image_.types[id];

@@ -37,7 +37,7 @@ class ValueRanges {
   std::vector<Holds> holds_;  // by type, once it is asked for
 };
 
-// As in symbols.h; the text of an aggregate ends early, soon behind `max_bytes`.
+// As in symbols.h; the text of an aggregate ends early, soon after `max_bytes`.
 std::string format_value(const Image& image, const Symbol& symbol, std::span<const uint8_t> memory,
                          size_t max_bytes);
 

@@ -40,7 +40,7 @@ std::string meant(const Image& image, std::string_view path) {
   base::NearestName nearest(name);
   base::NearestName listed(rest.substr(0, rest.find_first_of(".[", next)));
   for (const Member& member : image.types[owner].members) {
-    if (same_name(member.name, name)) return {};  // it is there, and what is wrong stands behind it
+    if (same_name(member.name, name)) return {};  // it is there, and what is wrong stands after it
     if (!is_listed(member)) continue;
     (member.name.find('.') == std::string::npos ? nearest : listed).offer(member.name);
   }

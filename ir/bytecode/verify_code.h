@@ -233,7 +233,7 @@ class CodeVerifier {
   Unit u_;
   Unit extension_;
   bool falls_through_ = true;
-  uint32_t table_end_ = 0;  // of the last SWITCH: the unit behind its table
+  uint32_t table_end_ = 0;  // of the last SWITCH: the unit after its table
   size_t next_merge_ = 0;
   uint32_t next_merge_unit_ = kNone;
 

@@ -143,7 +143,7 @@ bool CodeVerifier::scan_instructions() {
     const Opcode op = u.opcode();
     const OpcodeChecks& checks = checks_[u.opcode_number()];
     if (checks.calls) calls.push_back(unit);
-    // Where a handler begins, no results are left, as behind a call.
+    // Where a handler begins, no results are left, as after a call.
     if (op == Opcode::TRY) calls.push_back(unit + 1 + u.bc());
     if (op == Opcode::LOOP) loops.push_back(unit);
     u_ = u;
@@ -327,13 +327,13 @@ bool CodeVerifier::check_switch(uint32_t next) {
     return fail(Refusal::kBadJump, "has a table of " + std::to_string(entries) + " jumps");
   }
   if (entries >= code_.size() - next) {
-    return fail(Refusal::kBadJump, "nothing stands behind its table");
+    return fail(Refusal::kBadJump, "nothing stands after its table");
   }
   table_end_ = next + entries;
   return true;
 }
 
-// Units up to the one behind a table: what held at the SWITCH holds there.
+// Units up to the one after a table: what held at the SWITCH holds there.
 bool CodeVerifier::check_table(uint32_t unit) {
   falls_through_ = true;
   if (unit == table_end_) return true;

@@ -33,7 +33,7 @@ base::Status verify_constants(const Image& image);
 
 class Likeness;  // proof.h
 
-// What the parts behind it share.
+// What the parts after it share.
 struct Context {
   // Borrows all. `r`: of the image's types and layouts.
   Context(const Image& i, const std::vector<TypeFacts>& f, const RegionMap& r)
@@ -51,10 +51,10 @@ base::Status verify_tables(Context& context, const Likeness& likeness);
 // --- verify_overrides.cc: what virtual calls find -------------------------------
 base::Status verify_overrides(const Image& image);
 
-// --- verify_migrations.cc: functions that migrate values, behind all tables ------
+// --- verify_migrations.cc: functions that migrate values, after all tables ------
 base::Status verify_migrations(const Image& image);
 
-// --- verify_charts.cc: nets of charts, behind all POUs and types -----------------
+// --- verify_charts.cc: nets of charts, after all POUs and types -----------------
 base::Status verify_charts(const Image& image);
 // --- verify_tables.cc: identities of what sources say, for all POUs or for none --------
 base::Status verify_contents(const Image& image);

@@ -66,7 +66,7 @@ class TablesVerifier {
       if (pou.unit_count != 0) {
         ranges.emplace_back(pou.first_unit, uint64_t{pou.first_unit} + pou.unit_count);
       } else if (pou.first_unit > image_.code.size()) {
-        return refuse(Refusal::kUnreachable, "POU `" + pou.name + "` begins behind all code");
+        return refuse(Refusal::kUnreachable, "POU `" + pou.name + "` begins after all code");
       }
     }
     std::sort(ranges.begin(), ranges.end());

@@ -29,7 +29,7 @@ bool CodeVerifier::check_end_try() {
   return true;
 }
 
-// A trap may come right behind the write, and then a handler finds this addr in the slot.
+// A trap may come right after the write, and then a handler finds this addr in the slot.
 bool CodeVerifier::outlives_traps(uint32_t slot, const Pointer& pointer) {
   for (uint32_t scope = scope_; scope != 0; scope = scopes_[scope].parent) {
     const uint32_t handler = scopes_[scope].handler;

@@ -247,7 +247,7 @@ class TypesVerifier {
         return bad(i, "member `" + member.name + "` does not lie where its address says");
       }
       if (uint64_t{at} + image_.layouts[member.type].size > limit) {
-        return bad(i, "member `" + member.name + "` ends behind its end");
+        return bad(i, "member `" + member.name + "` ends after its end");
       }
     }
     return base::Ok{};
@@ -265,7 +265,7 @@ class TypesVerifier {
           member.section == Section::kInOut ? 4 : image_.layouts[member.type].size;
       if (begin + size > limit) {
         return bad(i, "member `" + member.name + "` ends at " + std::to_string(begin + size) +
-                          ", behind its end at " + std::to_string(limit));
+                          ", after its end at " + std::to_string(limit));
       }
       sorted = sorted && (extents.empty() || extents.back() <= std::pair(begin, begin + size));
       extents.emplace_back(begin, begin + size);

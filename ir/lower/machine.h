@@ -63,7 +63,7 @@ struct BlockEnd {
   uint32_t other = 0;  // position of a block, kBranch; the handler of kTry
   uint32_t trap = 0;
   uint32_t line = 0;
-  std::vector<uint32_t> table = {};  // kSwitch: positions of blocks behind this one
+  std::vector<uint32_t> table = {};  // kSwitch: positions of blocks after this one
 };
 
 struct MachineBlock {

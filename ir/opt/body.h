@@ -35,7 +35,7 @@ class Constants {
   std::optional<uint64_t> operator[](ValueId value) const {
     return known(value) ? std::optional<uint64_t>(bits_[value.index]) : std::nullopt;
   }
-  // False of values that were made behind the constructor and not set.
+  // False of values that were made after the constructor and not set.
   bool known(ValueId value) const { return value.index < known_.size() && known_[value.index]; }
   void set(ValueId value, uint64_t bits);
 

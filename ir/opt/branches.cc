@@ -117,7 +117,7 @@ class Branches {
     return uses_[value.index];
   }
 
-  // A jump backwards stays behind the body of its loop, for the verifier of bytecode looks for
+  // A jump backwards stays after the body of its loop, for the verifier of bytecode looks for
   // calls in between; fuel ends there, and the trap names its line.
   void pass_jumps(Inst& end, Target& target) {
     for (int hop = 0; hop < kMaxHops && only_jumps(target.block); ++hop) {

@@ -176,7 +176,7 @@ class Numbers {
     return 2 * place.steps[0].index + (place.base == PlaceBase::kSelf ? 2 : 3);
   }
 
-  // What is stored there is not what is read behind it while the variable is forced: such stores
+  // What is stored there is not what is read after it while the variable is forced: such stores
   // are gone then, and everything else stays (docs/adr/0026-forced-versions.md). Of places in the
   // frame only what in-outs lead to can be forced.
   static bool can_be_forced(const Place& place) {

@@ -26,8 +26,8 @@ constexpr auto kRows = [] {
   return rows;
 }();
 
-// What one pass finds out, a later one uses: constants come to light behind calls that
-// became bodies, branches behind constants, single values behind dead stores.
+// What one pass finds out, a later one uses: constants come to light after calls that
+// became bodies, branches after constants, single values after dead stores.
 constexpr Pass kOrder[] = {
     Pass::kInline,   Pass::kTexts,    Pass::kNumbers, Pass::kFold,  Pass::kBranches,
     Pass::kCopies,   Pass::kStores,   Pass::kNumbers, Pass::kFold,  Pass::kChecks,

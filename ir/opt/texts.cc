@@ -141,7 +141,7 @@ class Texts {
            is(inst, NativeId::kConcat3S) || is(inst, NativeId::kConcat3W);
   }
 
-  // CONCAT(a, b) and a third text, in front of it or behind it.
+  // CONCAT(a, b) and a third text, in front of it or after it.
   void join(size_t i) {
     Inst& inst = (*insts_)[i];
     const bool narrow = is(inst, NativeId::kConcatS);

@@ -101,7 +101,7 @@ std::optional<Address> EvalInspector::find_element(const Address& at,
   return flat ? std::optional(part_of(at, *flat)) : std::nullopt;
 }
 
-// `end` is behind the name.
+// `end` is after the name.
 std::optional<Address> EvalInspector::find_dotted(std::string_view path, size_t& end) const {
   const std::string_view name = listed_name(program_.types, program_.globals, path);
   if (name.empty()) {

@@ -49,7 +49,7 @@ class EvalMachine {
   std::optional<EvalTrap> run(Variable& instance, uint32_t task, int64_t now_ns, uint64_t& budget);
   // Runs a function that has no parameters; `local` of its frame as it was at the end.
   EvalResult run_alone(const Pou& pou, uint32_t local, uint64_t& budget);
-  // Called behind each instruction that may write variables.
+  // Called after each instruction that may write variables.
   std::function<void()> written;
 
  private:

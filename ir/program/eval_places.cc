@@ -245,7 +245,7 @@ void EvalMachine::set_units(const Address& to, const std::vector<uint8_t>& units
   }
 }
 
-// Up to the NUL or the capacity, and a NUL; what lies behind stays.
+// Up to the NUL or the capacity, and a NUL; what lies after stays.
 void EvalMachine::set_text(const Address& to, std::string_view text) {
   const size_t unit = program_.types[to.type].kind == Kind::kWstring ? 2 : 1;
   size_t length = 0;
@@ -364,7 +364,7 @@ void EvalMachine::run_handle(Frame& frame, const Inst& inst) {
 
 void EvalMachine::run_native(Frame& frame, const Inst& inst) {
   const stdlib::NativeRow& row = stdlib::native_row(inst.native);
-  // Strings lie one behind the other in `memory`, and references to them among the arguments.
+  // Strings lie one after the other in `memory`, and references to them among the arguments.
   std::vector<uint64_t> args(std::max<size_t>(inst.operands.size(), stdlib::kDirectArguments));
   std::vector<uint8_t> memory;
   size_t first_size = 0;

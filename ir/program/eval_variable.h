@@ -35,7 +35,7 @@ struct Variable {
   TypeId type;
   bool slot = false;
   uint64_t bits = 0;
-  // Strings: all units, the NUL and what lies behind it included. A structure that was written as
+  // Strings: all units, the NUL and what lies after it included. A structure that was written as
   // bytes: these, for its padding.
   std::string bytes;
   std::vector<Variable> parts;
@@ -55,7 +55,7 @@ class Variables {
   void reset(Variable& variable, ConstId init) const;
   // A string is cut to the capacity of `to`; what holds strings is copied byte for byte.
   void copy(Variable& to, const Variable& from) const;
-  // Up to the first NUL, or to the capacity; what lies behind the new NUL stays.
+  // Up to the first NUL, or to the capacity; what lies after the new NUL stays.
   void set_text(Variable& variable, std::string_view text) const;
   std::string_view text(const Variable& variable) const;
 

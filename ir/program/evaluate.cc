@@ -40,7 +40,7 @@ struct Evaluator::Impl {
   EvalMachine machine;
   EvalInspector inspector;
   std::vector<EvalTrap> start_traps;  // of what ran before the first scan
-  bool start_pending = false;         // behind a restart
+  bool start_pending = false;         // after a restart
   std::vector<bool> released;         // by task
   std::vector<bool> level;            // of its event, when it was looked at last
 

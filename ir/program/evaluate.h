@@ -55,7 +55,7 @@ class Evaluator {
   Evaluator(const Program& program, EvalMemory memory);
   ~Evaluator();
 
-  // Start code once more, as a controller runs it behind a change: for what has not begun yet. Its
+  // Start code once more, as a controller runs it after a change: for what has not begun yet. Its
   // traps belong to the next scan, as those of the start.
   void run_start();
   // Runs one scan: every task whose period divides now_ns, by priority, each to its
@@ -75,7 +75,7 @@ class Evaluator {
   // As they are in memory, of a structure too: with what overlaps other leaves, follows a NUL or
   // is padding. Outputs count as left by a complete scan.
   base::Status set_bytes(std::string_view path, std::span<const uint8_t> bytes);
-  // From now on the bytes are there again behind whatever may have written them: a force, as every
+  // From now on the bytes are there again after whatever may have written them: a force, as every
   // reader is to find it (docs/adr/0026-forced-versions.md).
   base::Status hold(std::string_view path, std::span<const uint8_t> bytes);
   void release(std::string_view path);

@@ -257,7 +257,7 @@ struct Task {
   int64_t watchdog_ns = 0;  // 0: ten periods
   uint32_t priority = 0;    // 0 is the highest, as in IEC 61131-3
   // Start code: runs at cold start, after all initial values and before the first scan, and in
-  // the first cycle behind a change of variables, before all others. Its period is 0.
+  // the first cycle after a change of variables, before all others. Its period is 0.
   bool once = false;
   // SINGLE: the number of a BOOL member of the globals; kNoEvent: none. Each rising edge
   // releases the task. It is looked at when a cycle starts and when a task ends; its
@@ -278,7 +278,7 @@ struct ProgramInstance {
   OldNameId old_name = {};
 };
 
-// A function block instance that a task runs by itself, behind the task's programs:
+// A function block instance that a task runs by itself, after the task's programs:
 // variable `member` of the program instance of that number.
 struct BlockTask {
   uint32_t program = 0;

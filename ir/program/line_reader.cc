@@ -37,7 +37,7 @@ size_t number_end(std::string_view line, size_t from) {
   return end;
 }
 
-// Behind the closing quote; the line's end when there is none. `$` hides a quote.
+// After the closing quote; the line's end when there is none. `$` hides a quote.
 size_t string_end(std::string_view line, size_t from) {
   for (size_t i = from + 1; i < line.size(); ++i) {
     if (line[i] == '$') {

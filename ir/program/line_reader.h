@@ -37,7 +37,7 @@ class LineReader {
   int64_t signed_number();
   uint64_t number(uint64_t limit = std::numeric_limits<uint64_t>::max());
   uint32_t index() { return static_cast<uint32_t>(number(0xfffffffe)); }
-  // "v12", "b3": the number behind the letter.
+  // "v12", "b3": the number after the letter.
   uint32_t numbered(char letter);
   ConstId constant();  // #N
   // Position of the next word in `words`.

@@ -84,7 +84,7 @@ class ProgramParser {
       if (line.take(declaration.word)) {
         (this->*declaration.parse)(line);
         if (!line.at_end()) {
-          line.fail("unexpected " + std::string(line.peek()) + " behind the declaration");
+          line.fail("unexpected " + std::string(line.peek()) + " after the declaration");
         }
         return;
       }
@@ -247,7 +247,7 @@ class ProgramParser {
     member.old_name = parse_renamed(line);
     const TypeId owner(program_.types.size() - 1);
     if (!program_.types.has_members(owner)) {
-      line.fail("member behind a type that has none");
+      line.fail("member after a type that has none");
     } else {
       program_.types.edit(owner).members.push_back(std::move(member));
     }

@@ -4,7 +4,7 @@
 namespace ir {
 namespace {
 
-// NAME or #N behind a point.
+// NAME or #N after a point.
 template <class Elements>
 uint32_t parse_element(LineReader& line, const Elements& elements, std::string_view what) {
   if (line.take("#")) {

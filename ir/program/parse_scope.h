@@ -14,7 +14,7 @@ class ParseScope {
  public:
   ParseScope();
 
-  // Reads "%N [NAME]" or "NAME" behind `type`; false when %N is not the next number.
+  // Reads "%N [NAME]" or "NAME" after `type`; false when %N is not the next number.
   bool add_type(LineReader& line);
   void add_pou(std::string_view name);
 

@@ -26,7 +26,7 @@ class PrintNames {
 
   std::string type(TypeId id) const;
   std::string pou(PouId id) const;
-  // Spelled behind a dot.
+  // Spelled after a dot.
   std::string member(TypeId type, uint32_t index) const;
   std::string local(const Pou& pou, uint32_t index) const;
   bool is_unique_type(TypeId id) const;

@@ -62,7 +62,7 @@ constexpr TaskChoice kChoices[] = {
     CHOICE("on_trap", on_trap, OnTrap::kGoOn, "go_on",
            "the scan is given up, its outputs stay as they were; the next release runs"),
     CHOICE(kFreewheeling, freewheeling, true, "",
-           "released again in the first cycle behind its scan, without a period"),
+           "released again in the first cycle after its scan, without a period"),
 };
 
 #undef CHOICE

@@ -42,7 +42,7 @@ struct TaskPolicy {
   IoBuffer output_buffer = IoBuffer::kCopied;
   Overrun overrun = Overrun::kSkip;
   OnTrap on_trap = OnTrap::kUnstated;
-  bool freewheeling = false;  // released again in the first cycle behind its scan; it has no period
+  bool freewheeling = false;  // released again in the first cycle after its scan; it has no period
   friend bool operator==(const TaskPolicy&, const TaskPolicy&) = default;
 };
 

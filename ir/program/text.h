@@ -38,7 +38,7 @@
 //     try b1, b2                   end_try b3
 //     jump b1(v2, v3)              branch v3, b1(v2, v3), b2   return        trap assert
 //
-// The scalar stands behind the operation where it has a meaning. Places: local,
+// The scalar stands after the operation where it has a meaning. Places: local,
 // arg(FUNCTION), self, global, const(#N : TYPE), pointee(v0 : TYPE), target(v0 : TYPE), then steps:
 // .member [index] ! (kEnter) ^ (kDeref). TYPE is a name, or %N where the name is
 // missing or not unique; likewise .#N is the member or local with number N.

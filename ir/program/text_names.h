@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 14> kKindWords = {
     "string",       "wstring", "enum",  "subrange",       "array",   "pointer", "ref_to",
     "reference_to", "struct",  "union", "function_block", "program", "globals", "interface"};
 
-// Does the scalar stand behind the operation?
+// Does the scalar stand after the operation?
 bool shows_scalar(Op op);
 // Scalar of the result: bool for comparisons, the instruction's otherwise.
 Scalar result_scalar(const Inst& inst);

@@ -1,4 +1,4 @@
-// Every use is behind its definition, on every way.
+// Every use is after its definition, on every way.
 #include <string>
 
 #include "ir/program/dominators.h"

@@ -12,7 +12,7 @@ namespace ir {
 // string could arrive without its end, a reference could name anything.
 bool is_locatable(const TypeTable& types, TypeId type);
 
-// BOOLs that take one bit each behind `address`: a BOOL alone, or all elements of an array of BOOL
+// BOOLs that take one bit each after `address`: a BOOL alone, or all elements of an array of BOOL
 // at a bit address. 0: the variable takes whole bytes, one for a BOOL.
 uint64_t located_bools(const TypeTable& types, TypeId type, const DirectAddress& address);
 

@@ -1,5 +1,5 @@
 // Members of a type by name, for whoever asks for many. Two versions mostly declare
-// their members in the same order, so the member behind the last one found is tried
+// their members in the same order, so the member after the last one found is tried
 // before a table is made.
 #pragma once
 

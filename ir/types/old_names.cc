@@ -8,7 +8,7 @@ namespace ir {
 
 namespace {
 
-// The comma behind the first name; one in an index is part of it.
+// The comma after the first name; one in an index is part of it.
 size_t end_of_name(std::string_view rule) {
   bool index = false;
   for (size_t i = 0; i < rule.size(); ++i) {

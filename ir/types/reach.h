@@ -61,7 +61,7 @@ Reach reach_of(std::span<const Reach> sorted, uint32_t area_bytes, uint64_t hand
 // so many bytes, of which the low 32 bits count, with their sign. The same for one step as for
 // several in one direction.
 uint64_t moved_from(Reach reach, uint64_t handle, uint32_t bytes);
-// The handle of segment `segment` that lies `position` bytes behind the variable's begin.
+// The handle of segment `segment` that lies `position` bytes after the variable's begin.
 uint64_t handle_in(Reach reach, uint32_t segment, int64_t position);
 
 }  // namespace ir

@@ -4,7 +4,7 @@
 // `Main.b` that of a variable of a program.
 //
 // A BOOL at a bit of such bytes (`x AT %MX8.3`) is a member of type BYTE with the bit in its
-// address: bit_size 1, bit_offset 3 behind the byte.
+// address: bit_size 1, bit_offset 3 after the byte.
 #pragma once
 
 #include <optional>

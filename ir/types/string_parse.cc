@@ -33,7 +33,7 @@ std::optional<uint32_t> hex_code(std::string_view text) {
 
 struct Escape {
   uint32_t code = 0;
-  uint32_t length = 0;  // characters behind `$`; 0: no escape
+  uint32_t length = 0;  // characters after `$`; 0: no escape
 };
 
 // `text` is what follows `$`.
@@ -89,7 +89,7 @@ base::Result<std::string> parse_string(std::string_view text) {
     if (c == '$') {
       const Escape escape = read_escape(body->substr(at + 1), '\'', 2);
       if (escape.length == 0) {
-        return not_a_string(text, "'text'; behind $ one of $ ' L N P R T or two hex digits");
+        return not_a_string(text, "'text'; after $ one of $ ' L N P R T or two hex digits");
       }
       bytes += static_cast<char>(escape.code);
       at += escape.length;
@@ -112,7 +112,7 @@ base::Result<std::string> parse_wstring(std::string_view text) {
     if ((*body)[at] == '$') {
       const Escape escape = read_escape(body->substr(at + 1), '"', 4);
       if (escape.length == 0) {
-        return not_a_string(text, "\"text\"; behind $ one of $ \" L N P R T or four hex digits");
+        return not_a_string(text, "\"text\"; after $ one of $ \" L N P R T or four hex digits");
       }
       units += utf16le(escape.code);
       at += escape.length + 1;

@@ -37,7 +37,7 @@ struct Cursor {
     return value;
   }
 
-  // Digits behind a point as parts of `unit_ns`; further digits than it can show are dropped.
+  // Digits after a point as parts of `unit_ns`; further digits than it can show are dropped.
   uint64_t fraction(uint64_t unit_ns) {
     uint64_t value = 0;
     uint64_t weight = unit_ns;
@@ -65,7 +65,7 @@ struct Cursor {
   }
 };
 
-// The text behind "T#" and the like; the text itself when it has no prefix at all.
+// The text after "T#" and the like; the text itself when it has no prefix at all.
 std::optional<std::string_view> behind_prefix(std::string_view text,
                                               std::initializer_list<std::string_view> prefixes) {
   const size_t hash = text.find('#');

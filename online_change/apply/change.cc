@@ -370,7 +370,7 @@ void Change::collect() {
   retired_area_.reset();
   retired_pending_.reset();
   if (state_ == State::kTrial) pending_->kept.reset();
-  // Behind a switch, which nothing takes back: without memory for it the program is interpreted.
+  // After a switch, which nothing takes back: without memory for it the program is interpreted.
   base::within_memory([&] { return controller_.make_native(), true; }, [] { return false; });
   (void)prime().ok();  // undo asks again
   if (state_ != State::kIdle) return;

@@ -107,7 +107,7 @@ class Change {
   // (A19); standby: the second data area. True: all is done.
   base::Result<bool> configure();
   uint64_t units_left() const;  // of that work
-  // Standby, by kPrepared and kArmed, at a boundary and behind configure(): copies again, in idle
+  // Standby, by kPrepared and kArmed, at a boundary and after configure(): copies again, in idle
   // time, what the program has written meanwhile, pass by pass, each begun in another cycle (C7).
   // True: what is left fits the free time of the tightest task, or more passes would not make it
   // less. In place: true.
@@ -130,7 +130,7 @@ class Change {
   // At the start of a controller, at a boundary: what runs is on trial since another process (D4).
   // Called for each edit, oldest first, the last one of which has made what runs; `retained` of
   // `before`, when it was switched. Its way back is the one that a switch with these values, and
-  // otherwise with those of a cold start, would have noted. Behind it: prime().
+  // otherwise with those of a cold start, would have noted. After it: prime().
   base::Status adopt(base::ByteSpan package, const ir::VerifiedImage& before,
                      const ir::VerifiedImage& after, base::ByteSpan retained);
   // Trial -> Idle with version 2 for good, and all that it was made on.
@@ -138,7 +138,7 @@ class Change {
   // The oldest `edits` of those on trial, for good; the others stay on trial, each with its way
   // back, and so does what is being prepared on top of them. Not at a boundary.
   base::Status accept_oldest(size_t edits);
-  // Trial -> Idle, or the trial of the edit before, with version 1 again; at a boundary, behind
+  // Trial -> Idle, or the trial of the edit before, with version 1 again; at a boundary, after
   // prime(). Inverse plan on the current state; values that the change dropped or narrowed come
   // back as they were, if nobody wrote them since.
   base::Result<SwitchReport> undo();

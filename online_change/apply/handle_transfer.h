@@ -1,4 +1,4 @@
-// References of live data follow a change: behind the last pass of a Transfer each one gets the
+// References of live data follow a change: after the last pass of a Transfer each one gets the
 // handle that names, in the new version, what it named in the old one; NULL when that is gone
 // (diff/place_moves.h). All memory is allocated beforehand; where nothing that can be referred to
 // moves or goes, on the way there or back, no reference is looked at.

@@ -130,7 +130,7 @@ base::Error Migrator::failed(const MigrationCall& call, const std::string& why) 
 
 base::Status Migrator::run_call(size_t number) {
   const MigrationCall& call = plan_.calls[number];
-  if (fuel_ > kMigrationsFuel) return failed(call, "no time is left behind those before it");
+  if (fuel_ > kMigrationsFuel) return failed(call, "no time is left after those before it");
   const uint32_t pou = code_->image().migrations[call.row].pou;
   uint8_t* frame = scratch_.data() + ir::kStackBegin;
   std::memset(frame, 0, code_->image().pous[pou].frame_size);

@@ -26,7 +26,7 @@ class Migrator {
                                                       const ir::Image& to,
                                                       const vm::Generation& code);
 
-  // Takes the inputs of call `first`, and of those behind it that make up about `most_bytes` with
+  // Takes the inputs of call `first`, and of those after it that make up about `most_bytes` with
   // it, so that a large plan can be looked at over several boundaries. What one call reads is
   // always of one instant. Returns the first call that was not looked at.
   size_t gather(size_t first, size_t most_bytes, const uint8_t* memory);

@@ -24,14 +24,14 @@
 
 namespace online_change {
 
-// Standby: passes behind the first copy, until what they leave for the boundary fits.
+// Standby: passes after the first copy, until what they leave for the boundary fits.
 struct CatchingUp {
   // So many in turn that bring nothing, and more would not either.
   static constexpr int kMostInVain = 4;
   uint64_t cycle = 0;         // in which the last one began
   int64_t least_ns = INT64_MAX;  // pause, of the best one
   int in_vain = 0;
-  // Behind a pass: true when more are of no use.
+  // After a pass: true when more are of no use.
   bool over(int64_t pause_ns, bool fits) {
     // A gain of less than an eighth is none: each program writes now more, now less.
     in_vain = pause_ns < least_ns - least_ns / 8 ? 0 : in_vain + 1;
@@ -60,7 +60,7 @@ struct Change::Pending {
                                                           : Charts(old(), new_image.image())),
         lost(lost_places(package.forward, old(), new_image.image())),
         left(vm::left_outputs(old(), new_image.image())) {}
-  // Behind stage(): both are known.
+  // After stage(): both are known.
   void count_work(const ir::Bools& bools) {
     if (keeps_all) {
       switch_work.values = bools_to_normalise(bools, waiting->bools());

@@ -45,9 +45,9 @@ class Standby {
   // The last close() was interrupted.
   bool behind() const { return behind_; }
 
-  // Version 2's data behind close(); whatever is exchanged for it, after that.
+  // Version 2's data after close(); whatever is exchanged for it, after that.
   vm::Memory& data() { return data_; }
-  // Behind the switch: all values of version 1, as it found them.
+  // After the switch: all values of version 1, as it found them.
   void put_back(uint8_t* memory) const;
   uint64_t compared_bytes() const { return compared_bytes_; }
   // What the last close() did, and what it would have done at the last pass.

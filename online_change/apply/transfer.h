@@ -75,7 +75,7 @@ class Transfer {
   void restore(uint8_t* memory) const { restore_first(memory, pieces_.size()); }
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  // Of the way back, behind remember(): a piece that this plan will initialise or convert.
+  // Of the way back, after remember(): a piece that this plan will initialise or convert.
   const uint8_t* remembered(const Piece& piece) const { return remembered_.data() + piece.at; }
   // Of the way there: what it has made of the value for `offset`, converted; null: none is.
   const uint8_t* converted(uint32_t offset, uint32_t size) const;

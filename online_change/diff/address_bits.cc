@@ -73,7 +73,7 @@ class RunFinder {
 
 uint8_t mask_of(uint64_t bit) { return static_cast<uint8_t>(1u << bit % 8); }
 
-// Where a bit is: in which byte of data memory, or behind the first of the run.
+// Where a bit is: in which byte of data memory, or after the first of the run.
 uint32_t byte_of(const AddressRun& run, uint64_t bit) {
   return run.alone ? 0 : static_cast<uint32_t>((bit - run.bit) / 8);
 }

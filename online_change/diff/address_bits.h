@@ -54,7 +54,7 @@ std::vector<AddressedVariable> addressed_variables(const ir::Image& image);
 class TakenBits {
  public:
   void add(const Gather& parts);
-  // Behind the last add().
+  // After the last add().
   bool all(uint64_t begin, uint64_t end) const;  // bytes of data memory
 
  private:

@@ -67,7 +67,7 @@ bool spread(std::vector<DiffOp>& ops, const Box& box, size_t dims) {
   return true;
 }
 
-// The new elements: per dimension one slab before and one behind the intersection.
+// The new elements: per dimension one slab before and one after the intersection.
 bool add_slab(std::vector<DiffOp>& ops, const Box& box, size_t dim, uint64_t first, uint64_t count,
               uint64_t leaves_per_byte_run, uint32_t row) {
   if (count == 0) return true;

@@ -22,7 +22,7 @@ class InitialData {
   uint32_t word(uint32_t offset) const;  // an instance slot
 
  private:
-  // First run that ends behind `offset`.
+  // First run that ends after `offset`.
   size_t first_run(uint32_t offset) const;
   bool has_run(uint32_t offset, uint32_t size) const;
   const std::vector<ir::DataRun>& runs_;

@@ -182,7 +182,7 @@ class Finder {
   std::vector<MovedPart> out_;
 };
 
-// "[0..9,3]" and "[4,3]", without the first bracket. Both begin behind their last one then.
+// "[0..9,3]" and "[4,3]", without the first bracket. Both begin after their last one then.
 bool index_covers(std::string_view& row, std::string_view& path) {
   const size_t row_end = row.find(']');
   const size_t path_end = path.find(']');

@@ -14,7 +14,7 @@ constexpr size_t kExchanged = 64;     // bytes that may have others in their pla
 constexpr size_t kStep = 64;          // between places that are looked for elsewhere
 constexpr size_t kOwn = 4096;         // own bytes between two such places, at most
 constexpr size_t kShift = 8192;       // as far as something may have moved
-constexpr size_t kMostSearches = 64;  // in vain; behind that only what is in its place is found
+constexpr size_t kMostSearches = 64;  // in vain; after that only what is in its place is found
 
 bool alike(base::ByteSpan a, size_t i, base::ByteSpan b, size_t j) {
   return i + kAlike <= a.size() && j + kAlike <= b.size() &&
@@ -56,7 +56,7 @@ class Maker {
   }
 
  private:
-  // Behind bytes that have no equals here.
+  // After bytes that have no equals here.
   void go_on() {
     for (size_t n = 1; n <= kExchanged; ++n) {
       if (alike(from_, in_ + n, to_, at_ + n)) return skip(n, n);
@@ -66,7 +66,7 @@ class Maker {
     skip(std::min(kOwn, to_.size() - at_), kOwn);
   }
 
-  // What follows in a while is somewhere near: behind this place, or else a little before it.
+  // What follows in a while is somewhere near: after this place, or else a little before it.
   bool find_moved() {
     const size_t here = std::min(in_, from_.size());
     const base::ByteSpan behind = from_.subspan(here, std::min(kShift, from_.size() - here));

@@ -10,7 +10,7 @@ namespace online_change {
 
 // Time is linear whatever they are; the result is never much longer than `to`.
 base::Bytes make_delta(base::ByteSpan from, base::ByteSpan to);
-// `to` again, behind what is in `out`; nullopt when the delta is damaged, made for other bytes, or
+// `to` again, after what is in `out`; nullopt when the delta is damaged, made for other bytes, or
 // of more than `limit`.
 std::optional<base::Bytes> apply_delta(base::ByteSpan from, base::ByteSpan delta, size_t limit,
                                        base::Bytes out = {});

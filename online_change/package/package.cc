@@ -186,7 +186,7 @@ base::Error bad_format(const std::string& what) {
 
 using Parts = std::array<base::ByteSpan, kParts>;
 
-// Each part as its header says, and nothing behind the last.
+// Each part as its header says, and nothing after the last.
 base::Result<Parts> split(ByteReader& in) {
   std::array<uint32_t, kParts> lengths{};
   std::array<base::Digest, kParts> stored{};

@@ -48,7 +48,7 @@ class PlanCheck {
   bool check_gathered(Node node, const Target& target, uint32_t depth);
   bool check_initial(Node node, const Target& target);
   bool is_initialised(uint32_t begin, uint32_t size, const Target& target) const;
-  // The old bytes of a union in front, initial ones behind them.
+  // The old bytes of a union in front, initial ones after them.
   bool check_grown_union(Node node);
   bool check_conversion(Node node, const Target& target, uint32_t depth);
   // `node` keeps bytes that the old version has at `from`.
@@ -74,7 +74,7 @@ class PlanCheck {
   InitialData old_data_;
   InitialData new_data_;
   TypeFit fit_;
-  std::optional<StepValues> values_;  // disjoint behind check_targets()
+  std::optional<StepValues> values_;  // disjoint after check_targets()
   // By step: so many values from the first on; those that were reached before one in front of them.
   std::vector<uint32_t> reached_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> reached_early_;

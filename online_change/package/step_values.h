@@ -24,7 +24,7 @@ class StepValues {
   // 2^32.
   explicit StepValues(const std::vector<UpdateStep>& steps);
 
-  // The lowest one that ends behind `place`; where values overlap, one of them.
+  // The lowest one that ends after `place`; where values overlap, one of them.
   std::optional<StepValue> first_behind(uint32_t place) const;
   // The place of a value that begins inside of another one. Time follows the number of values only
   // where steps alternate without a common period.
@@ -41,7 +41,7 @@ class StepValues {
     uint64_t end = 0;
   };
   struct Tooth {
-    uint32_t phase = 0;  // behind the beginning of the comb
+    uint32_t phase = 0;  // after the beginning of the comb
     uint32_t size = 0;
     uint32_t step = 0;
   };

@@ -87,7 +87,7 @@ Fit TypeFit::compare_values(TypeId old_type, TypeId new_type) {
   if (old_.types.overlaps(old_type) || new_.types.overlaps(new_type)) {
     bool alike =
         ir::same_value_type(old_.types, old_.layouts, old_type, new_.types, new_.layouts, new_type);
-    // What is behind the old bytes is another step's.
+    // What is after the old bytes is another step's.
     alike = alike || (keeps_union_bytes(old_, old_type, new_, new_type) &&
                       old_.layouts[old_type].size >= new_.layouts[new_type].size);
     return alike ? Fit::kYes : Fit::kNo;

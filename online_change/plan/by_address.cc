@@ -130,7 +130,7 @@ uint32_t ByAddress::row_for(const AddressedVariable& variable, const UpdateStep&
   return static_cast<uint32_t>(plan_.fates.size() - 1);
 }
 
-// What is left of the step lies in front of the variable and behind it.
+// What is left of the step lies in front of the variable and after it.
 void ByAddress::split(size_t number, const AddressedVariable& variable, UpdateStep made) {
   const UpdateStep step = plan_.steps[number];
   const auto part = [&](uint32_t begin, uint32_t end) {

@@ -21,7 +21,7 @@ class MigrationCalls {
                  const ir::Image& code)
       : plan_(plan), migrations_(migrations), from_(from), code_(code) {}
 
-  // Behind the last value of an instance.
+  // After the last value of an instance.
   void end_instance() { here_.clear(); }
   // The step for value `index` of a kMigrate operation of the instance that is `instance` in the
   // version that is made, and whose area was at `from` and is at `to`.

@@ -23,7 +23,7 @@ enum Field : uint8_t { kTypeText, kContent, kValue, kHidden, kRetained, kFixed, 
 struct FieldRow {
   TableChange change;
   const char* label;
-  bool shown;  // before and after, behind the label
+  bool shown;  // before and after, after the label
 };
 constexpr FieldRow kFieldRows[kFields] = {
     {TableChange::kType, "type", true},
@@ -163,7 +163,7 @@ class TableComparer {
   // What stood in front of it stands in front of it now.
   void compare_place(const TableRow& row, const TableRow& now) {
     if (behind_ != nullptr && &now < behind_) {
-      add(TableChange::kOrder, row, base::joined({"it stood behind `", behind_->path, "`"}));
+      add(TableChange::kOrder, row, base::joined({"it stood after `", behind_->path, "`"}));
     } else {
       behind_ = &now;
     }

@@ -18,7 +18,7 @@ namespace online_change {
 
 enum class TableChange : uint8_t {
   kRemoved,   // a variable, or a program with all of its own
-  kOrder,     // one that stood in front of it stands behind it now
+  kOrder,     // one that stood in front of it stands after it now
   kType,      // or what is inside of it: a structure's members, an array's bounds
   kInitial,   //
   kRetain,    //

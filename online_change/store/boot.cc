@@ -191,7 +191,7 @@ class Booting {
   }
 
   // What the newest values are of: the newest edit mostly; one below it, where a cut came before it
-  // had saved any; the one above it, where a cut came behind an undo. That one is not in the list
+  // had saved any; the one above it, where a cut came after an undo. That one is not in the list
   // when it was not to boot: what it had dropped begins anew then.
   base::Result<CarriedValues> values_on_trial(const std::vector<StoredEdit>& all,
                                               const Boot& boot) const {

@@ -84,7 +84,7 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
   entry.cycle = in.u64();
   entry.who = in.text();
   entry.text = in.text();
-  entry.source = in.text();  // zeros behind what older releases have written: ""
+  entry.source = in.text();  // zeros after what older releases have written: ""
   if (in.failed() || entry.sequence > kLastSequence || entry.who.size() > kMaxWho ||
       entry.text.size() > kMaxText || entry.source.size() > kMaxSource) {
     return std::nullopt;

@@ -82,7 +82,7 @@ class Journal {
   Journal(vm::Storage& storage, std::string name, uint32_t entries)
       : storage_(storage), name_(std::move(name)), entries_(entries) {}
   void recover();
-  // Durable when it returns without an error. Behind one nothing more is written before renew().
+  // Durable when it returns without an error. After one nothing more is written before renew().
   base::Status add(JournalEntry entry);
   // A file that was removed has failed.
   void check();

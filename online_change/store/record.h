@@ -1,4 +1,4 @@
-// One durable record in a file of its own: a header in the first sector, the payload behind it. A
+// One durable record in a file of its own: a header in the first sector, the payload after it. A
 // record is valid when its checksums are right, and by nothing else: a cut leaves the record as it
 // was, or as it shall be, or one that is seen not to be valid, in whatever order the disk has
 // written it. docs/adr/0013-durable-storage.md has the format.
@@ -32,7 +32,7 @@ struct Record {
   base::Bytes payload;    // of kValid
 };
 
-// One behind the other; borrowed.
+// One after the other; borrowed.
 struct Payload {
   Payload(base::ByteSpan all) : first(all) {}      // NOLINT: most are in one piece
   Payload(const base::Bytes& all) : first(all) {}  // NOLINT
@@ -49,10 +49,10 @@ constexpr uint64_t record_bytes(uint64_t payload) { return kSectorBytes + payloa
 base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& payload);
 // Any content of the file, of any length. Takes no more memory than the file has bytes.
 Record read_record(vm::Storage& storage, const std::string& name, RecordKind kind);
-// Durable when it returns. Behind an error the file holds anything.
+// Durable when it returns. After an error the file holds anything.
 base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
                           uint64_t sequence, const Payload& payload);
-// The same in a new file of `size` bytes at least. Behind an error the file holds what it held, or
+// The same in a new file of `size` bytes at least. After an error the file holds what it held, or
 // the record.
 base::Status replace_record(vm::Storage& storage, const std::string& name, RecordKind kind,
                             uint64_t sequence, const Payload& payload, uint64_t size);

@@ -1,5 +1,5 @@
 // Where the bytes of data memory are among the retained ones, which are the ranges of Image::retain
-// one behind the other.
+// one after the other.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The retained values of one boundary, as bytes of the ranges of Image::retain one behind the
+// The retained values of one boundary, as bytes of the ranges of Image::retain one after the
 // other, and the image whose layout that is.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace online_change {
 struct RetainRecord {
   base::Digest image{};
   bool trial = false;  // taken while that image was on trial
-  uint64_t cycle = 0;  // behind which
+  uint64_t cycle = 0;  // after which
   base::Bytes values;
 };
 

@@ -1,4 +1,4 @@
-// Retained values as bytes: the ranges of Image::retain, one behind the other. Another version's
+// Retained values as bytes: the ranges of Image::retain, one after the other. Another version's
 // are carried over by path and type as a change does it (A14); what is not retained in both begins
 // with its initial value.
 #pragma once

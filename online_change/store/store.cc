@@ -296,7 +296,7 @@ base::Status Store::accept() {
 }
 
 // The control record is written last: until then a boot finds what was accepted before, with the
-// values that belong to it. The new ones go behind the newest, which are those of the trial.
+// values that belong to it. The new ones go after the newest, which are those of the trial.
 base::Status Store::accept_below(const ImageToStore& image, uint64_t cycle,
                                  base::ByteSpan values) {
   std::lock_guard slots_lock(slots_mutex_);

@@ -128,7 +128,7 @@ int32_t find(Text<Unit> in, Text<Unit> what) {
   }
 }
 
-// Nobody looks behind the position.
+// Nobody looks after the position.
 template <typename Unit>
 uint64_t character(Text<Unit> of, int64_t at) {
   if (at < 0 || at >= of.capacity) return 0;
@@ -137,7 +137,7 @@ uint64_t character(Text<Unit> of, int64_t at) {
   return is_inside ? load<Unit>(of.data + size_t{index} * sizeof(Unit)) : 0;
 }
 
-// Of the units behind the end nothing is known, so those up to the new one get defined here.
+// Of the units after the end nothing is known, so those up to the new one get defined here.
 template <typename Unit>
 void set_character(Text<Unit> of, int64_t at, uint64_t code) {
   const Unit unit = static_cast<Unit>(code);

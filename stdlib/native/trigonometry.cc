@@ -13,7 +13,7 @@ constexpr Pair kMinusSixth = {-0x1.5555555555555p-3, -0x1.5555555555555p-57};
 constexpr double kQuarterPi = 0x1.921fb54442d18p-1;
 constexpr double kTinyAngle = 0x1p-28;  // below it, sin x and tan x are x within half a unit
 
-// 64 zeros, then the bits of 2 / pi behind the point.
+// 64 zeros, then the bits of 2 / pi after the point.
 constexpr std::array<uint64_t, 20> kTwoOverPi = {
     0x0000000000000000U, 0xa2f9836e4e441529U, 0xfc2757d1f534ddc0U, 0xdb6295993c439041U,
     0xfe5163abdebbc561U, 0xb7246e3a424dd2e0U, 0x06492eea09d1921cU, 0xfe1deb1cb129a73eU,
@@ -66,7 +66,7 @@ Reduced reduce_angle(double x) {
   const auto bits = std::bit_cast<uint64_t>(std::fabs(x));
   const auto exponent = static_cast<uint32_t>(bits >> 52);  // |x| > 0.7, so 1022 or more
   const uint64_t m = (bits & 0xf'ffff'ffff'ffff) | (uint64_t{1} << 52);
-  const uint32_t first = exponent - 1075 + 62;  // e - 2 bits behind the point, 64 before it
+  const uint32_t first = exponent - 1075 + 62;  // e - 2 bits after the point, 64 before it
   const uint32_t word = first / 64;
   const uint32_t shift = first % 64;
   auto window = [&](uint32_t i) {

@@ -36,7 +36,7 @@ uint32_t first_unit(uint64_t bits) {
   return static_cast<uint32_t>(std::countr_zero(bits)) / (8u * sizeof(Unit));
 }
 
-// Units in front of the first NUL, at most `capacity`; reads no unit behind that many and one.
+// Units in front of the first NUL, at most `capacity`; reads no unit after that many and one.
 template <typename Unit>
 uint32_t length_of(const uint8_t* data, uint32_t capacity) {
   constexpr uint32_t kPerWord = 8 / sizeof(Unit);

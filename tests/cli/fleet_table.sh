@@ -30,7 +30,7 @@ refused() {  # refused NEW REGEX
   [ ! -e refused.fleet ] || fail "a file of a refused edit"
 }
 refused deleted.st '`spare`: removed .deleted.st:2:3.'
-refused reordered.st '`spare`: it stood behind `level` .reordered.st:2:3.'
+refused reordered.st '`spare`: it stood after `level` .reordered.st:2:3.'
 refused retyped.st '`level`: type INT -> DINT .retyped.st:2:3.'
 refused several.st '`level`: type INT -> DINT .*; `spare`: removed .*; `rate`: initial value 0.0 -> 1.0'
 stc build -q retyped.st -o retyped.img
@@ -49,7 +49,7 @@ serve other_value other_value.st
 set -- --dir own --dir other_type --dir other_order --dir other_value
 expect 0 stvm set --dir own mine=78
 expect 1 stvm fleet status extended.fleet "$@"
-said '^other_order: R0322: its own table: `level`: it stood behind `rate`; `spare`: it stood behind `rate`$'
+said '^other_order: R0322: its own table: `level`: it stood after `rate`; `spare`: it stood after `rate`$'
 said '^other_value: R0322: its own table: `spare`: initial value 6 -> 5$'
 said '^own +own +possible +1 of 1 *$'
 said '^other_type +other_type +refused +1 of 1 +R0322: its own table: '

@@ -59,7 +59,7 @@ said 'Valve: it writes where a variable is forced'
 expect 0 stvm status --dir plc --format json
 said '"boundary_forces":1'
 
-# The next version too, and the old one behind undo.
+# The next version too, and the old one after undo.
 expect 0 stvm change --dir plc --yes v2.st
 expect 0 stvm get --dir plc --forces
 said '^level=41  everywhere$'

@@ -64,7 +64,7 @@ bad 's/last : REAL/last : LREAL/' 'bad.st:6:3: error.E9003.: `last`: type REAL -
 bad 's/a, b : INT/a, b, c : INT/' 'bad.st:5:3: error.E9003.: `recipe`: its type is another one inside'
 bad 's/kept : INT := 3/kept : INT := 4/' 'bad.st:4:3: error.E9003.: `kept`: initial value 3 -> 4'
 bad 's/^VAR_GLOBAL/VAR_GLOBAL RETAIN/' 'bad.st:4:3: error.E9003.: `kept`: RETAIN no -> yes'
-bad 's/  first : INT;/  last : REAL;/; t; s/  last : REAL;/  first : INT;/' 'bad.st:4:3: error.E9002.: `kept`: it stood behind `first`'
+bad 's/  first : INT;/  last : REAL;/; t; s/  last : REAL;/  first : INT;/' 'bad.st:4:3: error.E9002.: `kept`: it stood after `first`'
 bad 's/speed/quick/g' 'bad.st:11:5: error.E9001.: `Main.speed`: removed'
 bad 's/speed : INT/speed : DINT/' 'bad.st:11:16: error.E9003.: `Main.speed`: type INT -> DINT'
 bad 's/last : REAL/last AT %MD8 : REAL/' 'E9003.: `last`: address none -> %MD8'

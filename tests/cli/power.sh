@@ -51,7 +51,7 @@ said '"trial_lost"'
 expect 0 stvm journal --dir plc
 said 'trial lost'
 
-# Behind accept at once: the new one boots.
+# After accept at once: the new one boots.
 expect 0 stvm change v2.st --dir plc --yes --allow-loss
 expect 0 stvm set total=300000 --dir plc
 expect 0 stvm accept --dir plc
@@ -62,7 +62,7 @@ expect 0 stvm get 'more[3]' --dir plc
 expect 0 stvm status --dir plc --format json
 grep -q trial_lost out && fail "no trial was lost"
 
-# Behind undo at once: the old one boots.
+# After undo at once: the old one boots.
 expect 0 stvm change v3.st --dir plc --yes --allow-loss
 expect 0 stvm set total=400000 --dir plc
 expect 0 stvm undo --dir plc

@@ -95,5 +95,5 @@ while at < len(data):
 open("other.rec", "wb").write(data)
 PY
   expect 1 stvm replay other.rec
-  said 'R0417.*behind cycle 41'
+  said 'R0417.*after cycle 41'
 fi

@@ -109,7 +109,7 @@ said 'R0314: `speed` would be written by RESOURCE `Pack`, but RESOURCE `Line` wr
 expect 0 stvm run plant --scans 300 --record rec
 expect 0 stvm replay rec.Pack --print speed,p.torn
 said '^speed=42'
-said 'the state is identical behind each of them'
+said 'the state is identical after each of them'
 expect 0 stvm replay rec.Line
 said '^300 cycles'
 

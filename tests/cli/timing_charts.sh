@@ -27,7 +27,7 @@ for example in preemption synchronous swapped_by_flag own_exchange change_before
 done
 
 # C5 by its numbers: 10 ms of the configuration before the release at 100 ms, which is on time, the
-# rest behind its scan; the switch before the release at 200 ms, and nothing is missed.
+# rest after its scan; the switch before the release at 200 ms, and nothing is missed.
 expect 0 stvm run "$examples/change_before.st" --virtual-time $change --chart - --format json
 tr -d ' \n' <out >json
 has() { grep -qF -- "$1" json || fail "not in the chart: $1"; }

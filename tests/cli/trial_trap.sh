@@ -73,7 +73,7 @@ expect 0 stvm undo --dir plc
 expect 0 stvm status --dir plc
 said ': running$'
 
-# Behind the first cycles it is a fault like any other.
+# After the first cycles it is a fault like any other.
 expect 0 stvm change late.st --yes --dir plc
 wait_for 'FAULT' stvm status --dir plc
 stays_in_fault

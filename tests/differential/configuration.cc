@@ -3,7 +3,7 @@
 
 namespace differential {
 
-// What goes in and out before and behind each scan, and a block with a task of its own.
+// What goes in and out before and after each scan, and a block with a task of its own.
 void Builder::connect(Task& task, const Interface& face) {
   auto global = [&](TypeRef type) {
     std::vector<std::string> names;

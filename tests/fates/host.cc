@@ -5,7 +5,7 @@
 //   OLD BYTES / NEW BYTES              the sources behind the line, of so many bytes
 //   SAFE old|new BIT BITS VALUE        an output's safe value: bit of %Q, bits, value
 //   SET PATH HEX                       bytes that a variable has before the change
-//   WRITE PATH HEX                     ... that it gets behind the switch, before undo
+//   WRITE PATH HEX                     ... that it gets after the switch, before undo
 //   GO
 //
 // and writes a line of JSON for each: the variables before the change, behind it and behind its

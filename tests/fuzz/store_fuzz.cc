@@ -32,7 +32,7 @@ ir::VerifiedImage sample_program(const char* name = "sample") {
   return *image;
 }
 
-// A trial that goes on behind the power loss (D4), in the middle of everything.
+// A trial that goes on after the power loss (D4), in the middle of everything.
 sim::SimStorage good_disk() {
   sim::SimStorage disk;
   Store store(disk, kSizes);

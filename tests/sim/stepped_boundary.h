@@ -22,7 +22,7 @@ class SteppedBoundary : public vm::Boundary {
   // Called around a job when the program behind it is another one.
   using Switched = std::function<void(const Snapshot& before, const Snapshot& now)>;
   void on_switch(Switched switched) { switched_ = std::move(switched); }
-  // Called behind each cycle and each job.
+  // Called after each cycle and each job.
   void on_cycle(std::function<void()> cycled) { cycled_ = std::move(cycled); }
   // While set, a job that does not switch may change no value.
   void guard(std::string what) { guarded_ = std::move(what); }

@@ -117,7 +117,7 @@ void be_quiet() {
   if (nowhere != nullptr) stdout = nowhere;
 }
 
-// Parses what stands behind the command, and runs it.
+// Parses what stands after the command, and runs it.
 template <class Run>
 int with_options(const Tool& tool, const Command& command, std::span<char* const> args, Run run) {
   if (wants_help(args)) return say(help_text(tool.name, command));

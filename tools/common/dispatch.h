@@ -27,7 +27,7 @@ struct Tool {
   const char* name;
   const char* purpose;
   std::span<const Entry* const> entries;
-  std::vector<VersionFact> facts;  // behind version and commit
+  std::vector<VersionFact> facts;  // after version and commit
   std::string notes;               // at the end of the overview
   std::vector<NamedForm> forms;
 };

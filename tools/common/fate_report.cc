@@ -50,7 +50,7 @@ std::string value_change(const FateRow& row, const LiveValue& value) {
   return text;
 }
 
-// "converted      LineStops : INT -> DINT", and behind it or below, whatever fits in
+// "converted      LineStops : INT -> DINT", and after it or below, whatever fits in
 // 80 columns, live value and reason.
 std::string row_text(const FateRow& row, std::string rest) {
   std::string text = online_change::fate_name(row.fate);

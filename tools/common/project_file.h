@@ -51,7 +51,7 @@ base::Result<ProjectFile> read_project_file(const std::string& path);
 // The same for unknown keys and wrong values; tables [devices.NAME] are not looked into.
 base::Result<ProjectFile> read_checked_project_file(const std::string& path);
 
-// Why `code` cannot have a level in [warnings] or behind --warn; "": it can.
+// Why `code` cannot have a level in [warnings] or after --warn; "": it can.
 std::string warning_code_fault(std::string_view code);
 
 // The stc.toml that is nearest to `path`: in that folder, or that of the file, or above it; or "".

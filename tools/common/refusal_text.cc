@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kLongestLine = 150;
 
-// The number that `text` has at `at`, which goes behind it and the `:` there.
+// The number that `text` has at `at`, which goes after it and the `:` there.
 std::optional<uint32_t> number_and_colon(std::string_view text, size_t& at) {
   uint32_t value = 0;
   const size_t begin = at;

@@ -13,7 +13,7 @@ namespace tools {
 // that file and links nothing else.
 extern const char kVersion[];
 extern const char kCommit[];  // "unknown" in what is built outside of a repository
-// Where a page for each code is ("/E3001" behind it); "": nowhere that this build knows of.
+// Where a page for each code is ("/E3001" after it); "": nowhere that this build knows of.
 extern const char kDocumentation[];
 
 // What a tool says beside: "protocol" and 10; "adapters" and their names.

@@ -32,7 +32,7 @@ std::string joined(const std::vector<BodyLine>& lines, size_t begin, size_t end)
 std::string place_text(const std::vector<BodyLine>& lines, size_t begin, size_t end) {
   if (begin == end) {
     if (begin == 0) return "at the beginning";
-    return "behind line " + std::to_string(lines[begin - 1].number);
+    return "after line " + std::to_string(lines[begin - 1].number);
   }
   const std::string first = std::to_string(lines[begin].number);
   const std::string last = std::to_string(lines[end - 1].number);

@@ -65,7 +65,7 @@ struct CoverageReport {
   Reached covered_lines;
 };
 
-// `hits` of each site; those behind its end are 0. The report refers to `sources`.
+// `hits` of each site; those after its end are 0. The report refers to `sources`.
 CoverageReport coverage_report(const std::vector<frontend::Site>& sites,
                                std::span<const uint64_t> hits, const base::SourceMap& sources);
 

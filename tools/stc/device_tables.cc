@@ -92,7 +92,7 @@ class Reader {
     if (entries == nullptr) return at(file_, value.place, "`map` must be a list of texts");
     for (size_t i = 0; i < entries->size(); ++i) {
       tools::TomlPlace place = value.places[i];
-      ++place.column;  // behind the quote
+      ++place.column;  // after the quote
       ir::DeviceMapping& mapping = devices_.back().map.emplace_back();
       if (auto fault = parse_map_entry((*entries)[i], mapping)) {
         place.column += static_cast<uint32_t>(fault->at);

@@ -23,7 +23,7 @@ Lines lines_of(std::string_view text) {
   return out;
 }
 
-// The nearest place behind (a, b) where both go on with the same two lines (or end).
+// The nearest place after (a, b) where both go on with the same two lines (or end).
 LineChange next_change(const Lines& from, const Lines& to, size_t a, size_t b) {
   auto same = [&](size_t i, size_t j) {
     if (i == from.size() || j == to.size()) return i == from.size() && j == to.size();

@@ -26,7 +26,7 @@ class FileEvents {
   bool watch(const std::set<std::string>& folders);
   // Readable when something has happened; -1: never.
   int descriptor() const { return events_; }
-  // Files that were closed behind writing, moved or deleted since the last call; nullopt: which
+  // Files that were closed after writing, moved or deleted since the last call; nullopt: which
   // ones is not known, or there are other folders now. Files that are saved together come together:
   // it waits until nothing has happened for `quiet`, but not for ever.
   std::optional<std::set<std::string>> take(std::chrono::milliseconds quiet);

@@ -28,7 +28,7 @@ class Importer {
   // One file, and what it lists. Errors: kFileNotFound, kFileUnreadable; what is wrong inside is
   // a finding.
   base::Status add(const std::string& path);
-  // Behind the last file: what several of them say together.
+  // After the last file: what several of them say together.
   void finish();
 
   struct Made {

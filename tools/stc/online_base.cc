@@ -68,7 +68,7 @@ std::string type_of_program(const ir::Image& image, const std::string& instance)
   return {};
 }
 
-// What is deleted is shown where it stood: behind its neighbour, or at its program.
+// What is deleted is shown where it stood: after its neighbour, or at its program.
 base::SourceSpan place_of(const TableEdit& edit, const ir::Image& edited,
                           const DeclaredPlaces& places) {
   const std::string& path = edit.change == TableChange::kRemoved ? edit.after : edit.path;
@@ -118,7 +118,7 @@ void add_limits(const online_change::OnlineLimits& limits, const ir::Image& orig
   }
 }
 
-// The number behind the magic.
+// The number after the magic.
 uint32_t format_of(const base::Bytes& image) {
   base::ByteReader in(image);
   (void)in.raw(ir::kImageMagic.size());

@@ -49,14 +49,14 @@ Unfinished::Wait Unfinished::for_writers(const Stamps& before, const Stamps& now
     const Time until = written + longest_pause_;
     if (until > wait.until) {
       wait = {until, path + " is being written; until it is closed, or for " + pause_text() +
-                         " behind its last write"};
+                         " after its last write"};
     }
   }
   // Whatever differs may be being written.
   const Time until = writers.lost + longest_pause_;
   if (before != now && until > wait.until) {
     wait = {until, "more is written in these folders than the system can tell; until " +
-                       pause_text() + " behind its end"};
+                       pause_text() + " after its end"};
   }
   return wait;
 }

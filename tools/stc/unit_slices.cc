@@ -11,7 +11,7 @@
 namespace stc {
 namespace {
 
-// Where a string that begins at `at` ends, behind its quote; `at` when none begins there.
+// Where a string that begins at `at` ends, after its quote; `at` when none begins there.
 size_t string_end(std::string_view text, size_t at) {
   const char quote = text[at];
   if (quote != '\'' && quote != '"') return at;
@@ -25,7 +25,7 @@ size_t string_end(std::string_view text, size_t at) {
   return text.size();
 }
 
-// Behind the comment, string or byte at `at`.
+// After the comment, string or byte at `at`.
 size_t behind_piece(std::string_view text, size_t at) {
   const size_t comment = frontend::network::comment_end(text, at);
   const size_t string = string_end(text, at);

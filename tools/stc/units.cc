@@ -165,7 +165,7 @@ class Units {
     return out;
   }
 
-  // Behind `begin`, without the word at the end.
+  // After `begin`, without the word at the end.
   std::vector<BodyLine> body_lines(const std::vector<base::SourceSpan>& own,
                                    base::SourcePos begin) const {
     std::vector<BodyLine> out;

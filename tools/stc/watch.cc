@@ -179,7 +179,7 @@ class Watch {
   }
 
   bool take(Stamps now, Clock::time_point begin) {
-    events_.read();  // behind the look: what is being written at it is known
+    events_.read();  // after the look: what is being written at it is known
     const bool differs = now != stamps_;
     const auto complete = unfinished_.until(stamps_, now, {events_.begun(), events_.lost()}, begin);
     look_at_ = complete.value_or(Clock::time_point::max());

@@ -38,7 +38,7 @@ class WatchTarget {
     kAgain,      // look and build once more
     kEnd,
   };
-  // What images are linked against; null: nothing. It stays until a take() has ended, and behind
+  // What images are linked against; null: nothing. It stays until a take() has ended, and after
   // kBase as long as edits are followed.
   virtual std::shared_ptr<const ir::Image> base() const = 0;
   // What there is to say of an image beside what the compiler found; errors keep it from take().

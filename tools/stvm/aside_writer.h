@@ -21,7 +21,7 @@ class AsideWriter {
 
   // Waits for the one before.
   void start(std::shared_ptr<const base::Bytes> image);
-  // Behind it nothing is written.
+  // After it nothing is written.
   void wait();
 
  private:

@@ -25,7 +25,7 @@ constexpr int kMostTries = 8;
 bool ControllerService::time_for_switch() const {
   int64_t left = controller_.next_cycle_ns() - clock_.now_ns();
   const int64_t needs = online_change::with_reserve(change_.predicted_pause_ns());
-  return left > needs + 2 * keeper_.copy_ns();  // before and behind
+  return left > needs + 2 * keeper_.copy_ns();  // before and after
 }
 
 // A pass begins in another cycle than the one before it, however long that takes; what counts are

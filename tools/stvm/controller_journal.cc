@@ -122,7 +122,7 @@ base::Status ControllerService::store_trial(Trial& next) {
   if (follows.ok() && !store_.retained_fits()) follows = save_retained_now();
   if (!follows.ok()) return follows;
   const bool resumes = (next.switch_flags & vm::kLastEditBoots) != 0;
-  if (resumes) {  // the values of the switch come behind it; until then these are newer than others
+  if (resumes) {  // the values of the switch come after it; until then these are newer than others
     next.retained = empty_snapshot();
     base::Status taken = look_at_boundary([&] { keeper_.take(next.retained); });
     if (taken.ok()) taken = keep_edits(&next);
@@ -166,7 +166,7 @@ void ControllerService::keep_programs_now_and_then() {
   store_is_behind_ = false;
 }
 
-// Entries from number `offset` on, as they lie on the disk; none behind the last. The first page
+// Entries from number `offset` on, as they lie on the disk; none after the last. The first page
 // reads it, and the others of the same connection are of that reading.
 base::Result<base::Bytes> ControllerService::journal(const vm::Request& request) {
   if (request.offset == 0 || history_of_ != session_) {
@@ -182,7 +182,7 @@ base::Result<base::Bytes> ControllerService::journal(const vm::Request& request)
   return page;
 }
 
-// From number `offset` on; none behind the last.
+// From number `offset` on; none after the last.
 base::Result<base::Bytes> ControllerService::events(const vm::Request& request) const {
   return events_ == nullptr ? base::Bytes() : events_->page(request.offset, vm::kChunkBytes);
 }

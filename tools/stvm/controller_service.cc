@@ -35,7 +35,7 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       units_(controller, {controller.cycles(), wall_time_(), start_.who, "started"}),
       aside_(store),
       keep_again_(1'000'000'000, 8'000'000'000) {
-  trials_.reserve(base::kMostEditsOnTrial);  // behind a switch nothing may fail
+  trials_.reserve(base::kMostEditsOnTrial);  // after a switch nothing may fail
   undone_.reserve(base::kMostEditsOnTrial);
   boundary_.give_up = [this] { return preparing_ && aborted(); };
 }

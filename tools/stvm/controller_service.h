@@ -36,7 +36,7 @@ struct StartReport {
 };
 // What finds too little time before the next cycle is tried again so much later.
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
-// So many cycles behind a switch, a version on trial that traps is undone by the controller (X7).
+// So many cycles after a switch, a version on trial that traps is undone by the controller (X7).
 inline constexpr uint64_t kProbationCycles = 1000;
 inline constexpr int kProbationLookMs = 20;  // between two looks at it
 // ns since 1970.
@@ -83,7 +83,7 @@ class ControllerService : public vm::Service {
     return probation_ || watches_unless() ? kProbationLookMs : 1000;
   }
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_acquire); }
-  // Who wanted it; behind stop_wanted().
+  // Who wanted it; after stop_wanted().
   const std::string& stopped_by() const { return stopped_by_; }
   online_change::RetainKeeper& keeper() { return keeper_; }
   // How many edits are on trial; for the control thread.
@@ -151,7 +151,7 @@ class ControllerService : public vm::Service {
   Answer edits(const vm::Request& request);
   Answer redo(const vm::Request& request);
   Answer facts(const vm::Request& request) const;
-  // Behind a switch or an undo of this cycle.
+  // After a switch or an undo of this cycle.
   void note_units(const char* event, uint64_t cycle);
   // What is staged, as an edit; before it is forgotten.
   TrialEdit describe_staged() const;
@@ -245,7 +245,7 @@ class ControllerService : public vm::Service {
   Answer switch_to_first();
   // It boots from now on. `retained`: what is stored of it, if anything.
   base::Status store_first(base::Bytes& retained);
-  // At a boundary behind its switch.
+  // At a boundary after its switch.
   void begin_first(base::ByteSpan retained);
 
   // controller_trial.cc

@@ -107,7 +107,7 @@ void ControllerService::give_back(const std::string& why) {
                 base::to_string(undone.error()) + "; `stvm undo` tries again";
 }
 
-// At a boundary, behind a switch or an undo, when a trap had stopped something: tasks run again
+// At a boundary, after a switch or an undo, when a trap had stopped something: tasks run again
 // with the values that they have, and what is new begins.
 void ControllerService::go_on_hot() {
   (void)controller_.restart(vm::Restart::kHot, kExitLimitNs).ok();  // nothing leaves

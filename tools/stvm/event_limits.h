@@ -16,7 +16,7 @@ class EventLimits {
   static constexpr int64_t kPeriodNs = 10'000'000'000;
   static constexpr uint64_t kOfPlant = 5;
   static constexpr uint64_t kOfPeople = 50;
-  static constexpr uint64_t kWhileFlooded = 1;  // in a period behind one with too many
+  static constexpr uint64_t kWhileFlooded = 1;  // in a period after one with too many
   // Of different sources at a time; those of more share a count.
   static constexpr size_t kMostSources = 256;
 

@@ -54,7 +54,7 @@ class EventLog {
 
   // Any other thread. False: there were too many like it, and it only counts.
   bool take(const online_change::JournalEntry& entry);
-  // Of a device, by its thread, perhaps behind the end of the store.
+  // Of a device, by its thread, perhaps after the end of the store.
   void take_device(vm::DeviceEvent event, const std::string& device, const std::string& text);
   // Events from number `first` on, as sectors of a journal, at most so many bytes; their `sequence`
   // is that number, from 1.

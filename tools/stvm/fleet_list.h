@@ -2,7 +2,7 @@
 //
 //   [controllers.line2]
 //   host = "plc@line2"      # or dir = "/var/lib/stvm"
-//   name = "Line 2"         # as results call it; else what stands behind `controllers.`
+//   name = "Line 2"         # as results call it; else what stands after `controllers.`
 //   allow_loss = true       # for this one only
 #pragma once
 

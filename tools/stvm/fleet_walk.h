@@ -16,7 +16,7 @@ struct FleetWalk {
   std::function<FleetRow(const FleetMember&)> visit;
   // By one_by_one: does it answer? Once a second for each that did not.
   std::function<bool(const FleetMember&)> answers;
-  // Behind each visit; one at a time.
+  // After each visit; one at a time.
   std::function<void(const FleetMember&, const FleetRow&)> told;
 };
 

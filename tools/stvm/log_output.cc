@@ -43,7 +43,7 @@ struct LogOutput::Core {
   std::condition_variable changed;
   std::vector<std::string> lines;  // that wait
   size_t in_hand = 0;              // that the thread has taken, and not written yet
-  uint64_t lost = 0;               // behind those that wait
+  uint64_t lost = 0;               // after those that wait
   bool ending = false;
   steady_clock::time_point end_by{};
   bool ended = false;
@@ -137,7 +137,7 @@ void LogOutput::start() {
 void LogOutput::add(online_change::Level level, int64_t time_ns, const std::string& text) {
   std::string line = log_line(level, time_ns, text, core_->for_journald);
   const std::lock_guard lock(core_->mutex);
-  // Behind one that is missing all are, until that can be said: they stay in their order.
+  // After one that is missing all are, until that can be said: they stay in their order.
   if (core_->lost != 0 || core_->lines.size() + core_->in_hand >= kMostLines) {
     ++core_->lost;
     return;

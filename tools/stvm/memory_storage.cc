@@ -30,7 +30,7 @@ base::Result<base::Bytes> MemoryStorage::read(std::string_view name, uint64_t of
 base::Status MemoryStorage::write(std::string_view name, uint64_t offset, base::ByteSpan bytes) {
   base::Bytes& file = files_[std::string(name)];
   if (offset + bytes.size() > file.size()) {
-    return base::Error{base::Refusal::kStorageFailed, "write behind the end of a file"};
+    return base::Error{base::Refusal::kStorageFailed, "write after the end of a file"};
   }
   std::copy(bytes.begin(), bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(offset));
   return base::Ok{};

@@ -93,11 +93,11 @@ class Player {
     return {base::Refusal::kBadRecording, why};
   }
 
-  // The cycle came out as it was, and behind it is done what was asked for then.
+  // The cycle came out as it was, and after it is done what was asked for then.
   base::Status compare_and_ask(const vm::RecordedCycle& cycle) {
     if (sum_.of(*controller_) != cycle.state || !replay_.exact()) {
       return base::Error{base::Refusal::kReplayDiffers,
-                         "behind cycle " + std::to_string(cycle.number)};
+                         "after cycle " + std::to_string(cycle.number)};
     }
     for (; request_ < recording_.requests.size(); ++request_) {
       const vm::RecordedRequest& request = recording_.requests[request_];
@@ -119,7 +119,7 @@ class Player {
     if (answer.ok()) return base::Ok{};
     return base::Error{
         base::Refusal::kReplayDiffers,
-        std::string(vm::command_name(request->command)) + " behind cycle " +
+        std::string(vm::command_name(request->command)) + " after cycle " +
             std::to_string(recorded.cycle) +
             " was carried out then, and is refused: " + base::to_string(answer.error())};
   }
@@ -157,7 +157,7 @@ void print_result(const Player& player, vm::Controller& controller,
     base::Result<std::string> value = controller.get(name);
     std::printf("%s=%s\n", name.c_str(), value.ok() ? value->c_str() : "?");
   }
-  std::printf("%llu cycles replayed, the state is identical behind each of them\n",
+  std::printf("%llu cycles replayed, the state is identical after each of them\n",
               static_cast<unsigned long long>(controller.cycles()));
   if (player.recording().cut_off) std::printf("the end of the recording is lost\n");
 }

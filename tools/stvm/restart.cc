@@ -1,4 +1,4 @@
-// stvm restart: all tasks run again, also behind a fault.
+// stvm restart: all tasks run again, also after a fault.
 #include <cstdio>
 
 #include "base/visible_text.h"
@@ -17,7 +17,7 @@ constexpr tools::OptionRow kRestartOptions[] = {
     STVM_CONTROLLER_OPTIONS,
     STVM_FORMAT_OPTION};
 constexpr tools::Command kRestartCommand{
-    "restart", "", "Runs all tasks again, behind a fault too.", kRestartOptions, 0, 0};
+    "restart", "", "Runs all tasks again, after a fault too.", kRestartOptions, 0, 0};
 
 struct Kind {
   const char* option;

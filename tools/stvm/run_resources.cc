@@ -22,7 +22,7 @@ namespace {
 using Resource = vm::GlobalExchange::Resource;
 using Running = std::vector<std::unique_ptr<ResourceController>>;
 
-// What stands behind "Line."; nullopt: it is of another resource.
+// What stands after "Line."; nullopt: it is of another resource.
 std::optional<std::string> name_in(const std::string& resource, const std::string& name) {
   if (resource.empty()) return name;
   const size_t dot = name.find('.');
@@ -59,7 +59,7 @@ base::Result<Name> find_name(const Running& running, const std::string& name) {
                      "`" + name + "`: with several resources, names begin with one: " + known};
 }
 
-// Those of --print, as paths behind the name of their resource.
+// Those of --print, as paths after the name of their resource.
 base::Result<Names> names_to_print(const Running& running, const Names& names) {
   Names out;
   for (const std::string& name : names) {

@@ -185,7 +185,7 @@ void print_ready(ServedResource& resource) {
 // This thread is the control thread.
 base::Status run_one(ServedResource& resource, const vm::RealTimeOptions& real_time,
                      ServiceNotify& notify) {
-  // Behind all other threads, which stay as they are.
+  // After all other threads, which stay as they are.
   if (base::Status fit = resource.make_real_time(real_time); !fit.ok()) {
     resource.give_up();
     return fit;
@@ -262,7 +262,7 @@ base::Status serve(const tools::Options& options) {
   const auto output = std::make_shared<LogOutput>(STDERR_FILENO, is_journal());
   base::Result<Served> served = open_all(options, output);
   if (!served.ok()) return served.error();
-  // Behind the compiler, which is a program of its own, and before all threads.
+  // After the compiler, which is a program of its own, and before all threads.
   if (real_time->confined) {
     base::Status confined = vm::confine_thread(vm::ThreadKind::kAny);
     if (!confined.ok()) return confined;

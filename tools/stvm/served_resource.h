@@ -35,12 +35,12 @@ class ServedResource {
 
   // The controller with its first scan's state, its service and its socket.
   base::Status start(const ResourceController::Settings& settings, vm::Clock& clock);
-  // Of the calling thread, behind start(): it will be the control thread.
+  // Of the calling thread, after start(): it will be the control thread.
   base::Status make_real_time(const vm::RealTimeOptions& options);
   // Until `stop` says so, or somebody asks this resource to; `alive` in each cycle and while it
   // waits. Then instances leave and outputs are safe.
   void run(const std::function<bool()>& stop, const std::function<void()>& alive);
-  // Behind run(), or instead of it: retained values, journal, recording.
+  // After run(), or instead of it: retained values, journal, recording.
   base::Status end();
   // Nobody is served any more, and run() was never called.
   void give_up();

@@ -33,7 +33,7 @@ struct TimingLane {
 
 class TimingChart : public vm::Timeline {
  public:
-  // Memory is bounded: what comes behind so many moments is left out, and the chart says so.
+  // Memory is bounded: what comes after so many moments is left out, and the chart says so.
   static constexpr size_t kMostMoments = 100'000;
 
   // Lanes of the tasks that have programs, the most urgent first.
@@ -43,7 +43,7 @@ class TimingChart : public vm::Timeline {
   // Idle time in which a change was configured; its switch.
   void configured(int64_t from_ns, int64_t to_ns);
   void switched(int64_t at_ns) { switches_.push_back(at_ns); }
-  // Nothing comes behind.
+  // Nothing comes after.
   void end(int64_t at_ns);
 
   std::string svg(const std::string& title) const;

@@ -113,7 +113,7 @@ struct Undone {
 struct UndoOptions {
   bool dry_run = false;
   bool json = false;
-  bool ask = false;  // behind the report
+  bool ask = false;  // after the report
 };
 
 base::Result<Undone> undo_one(ControllerClient& client, const std::string& name,

@@ -28,7 +28,7 @@ struct UnitRow {
   uint8_t slot = 0;        // 0: A, 1: B
   base::Digest unit{};     // identity of what runs (E1)
   OtherSlot other = OtherSlot::kEmpty;
-  base::Digest other_unit{};     // its first bytes, zeros behind them
+  base::Digest other_unit{};     // its first bytes, zeros after them
   base::Digest other_version{};  // of the image that it was written for; likewise
   // It runs in this slot since then; `event`: "started", "switched", "undone".
   uint64_t cycle = 0;

@@ -25,7 +25,7 @@ class UnitTable {
   };
 
   UnitTable(const vm::Controller& controller, Since started);
-  // Behind a switch or an undo: units that are in the other slot now, or new.
+  // After a switch or an undo: units that are in the other slot now, or new.
   void note(Since now);
   // Rows from POU `first` on, as many as one message takes. `staged`, `before`: versions that were
   // prepared and may lie in slots; null: none.

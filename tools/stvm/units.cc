@@ -66,7 +66,7 @@ const base::Digest& content_of(const std::vector<ir::Part>& parts, const std::st
   return part == nullptr ? kNoContent : part->identity;
 }
 
-// The newest edit behind which the unit is another one than before it.
+// The newest edit after which the unit is another one than before it.
 void find_edit(const std::vector<EditStep>& edits, UnitView& unit) {
   for (auto step = edits.rbegin(); step != edits.rend(); ++step) {
     if (content_of(step->before, unit.unit) == unit.content) continue;

@@ -1,4 +1,4 @@
-// Behind the changes of others: `stvm change --wait`, and each controller of `stvm fleet change`.
+// After the changes of others: `stvm change --wait`, and each controller of `stvm fleet change`.
 #pragma once
 
 #include "tools/stvm/controller_client.h"

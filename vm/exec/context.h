@@ -108,7 +108,7 @@ struct Context {
 
 using Handler = void (*)(const ir::Unit*, uint8_t*, uint8_t*, uint8_t*, const uint8_t*, Context*);
 
-// By handler number; Generation::build puts these numbers into the op fields. Behind those of the
+// By handler number; Generation::build puts these numbers into the op fields. After those of the
 // opcodes come the two of side units (vm/native/emit.h) and the fused ones (fusion.h).
 struct HandlerTable {
   Handler of[kHandlerLimit];

@@ -70,7 +70,7 @@ class Execution {
   // task from those of others.
   explicit Execution(uint32_t depth, uint32_t task = 0, uint32_t tries = base::kMaxTryDepth);
   ~Execution();
-  // Numbers its exposed locals behind those of `earlier`, so that no stale reference finds one.
+  // Numbers its exposed locals after those of `earlier`, so that no stale reference finds one.
   void count_on(const Execution& earlier);
 
   // Prepares a call of program instance `id`. `stack` is where its frames begin.

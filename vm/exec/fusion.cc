@@ -102,7 +102,7 @@ bool takes_random_place(uint64_t seed, size_t unit) {
   return (h >> 40 & 1) != 0;
 }
 
-// What a dispatch costs, and what is saved by each step that a fusion takes behind a back edge.
+// What a dispatch costs, and what is saved by each step that a fusion takes after a back edge.
 constexpr uint32_t kDispatch = 10;
 constexpr uint32_t kBehindLoop = 4;
 

@@ -40,7 +40,7 @@ constexpr std::array<uint8_t, sizeof...(S)> written_bases() {
   return out;
 }
 
-// A step as a number: its handler in bits 0 to 15, behind that for a, b and c four bits each: 0,
+// A step as a number: its handler in bits 0 to 15, after that for a, b and c four bits each: 0,
 // or 1 and more for the result of step 0 and so on.
 using StepKey = uint32_t;
 
@@ -107,9 +107,9 @@ class StepWalk {
   }
   uint32_t length() const { return length_; }
   uint32_t unit(uint32_t step) const { return taken_[step]; }
-  uint32_t next() const { return next_; }                // unit behind
+  uint32_t next() const { return next_; }                // unit after
   bool goes_back() const { return goes_back_; }          // a step was a LOOP
-  uint32_t behind_back() const { return behind_back_; }  // steps behind it
+  uint32_t behind_back() const { return behind_back_; }  // steps after it
 
  private:
   uint32_t source(const StepLine::Place& place) const;

@@ -135,7 +135,7 @@ void restore_forced(STC_HANDLER_ARGS) {
   STC_GO(aside.back, frame, self);
 }
 
-// Behind the one instruction that a helper executes.
+// After the one instruction that a helper executes.
 void stop_helper(STC_HANDLER_ARGS) {}
 
 }  // namespace vm

@@ -48,7 +48,7 @@ inline constexpr uint32_t kAsideHandler = kHandlerCount + 2;
 inline constexpr uint32_t kRestoreHandler = kHandlerCount + 3;
 // Of boolean logic (truth_tables.h).
 inline constexpr uint32_t kTruthTables = kHandlerCount + 4;
-// Fused handlers (fusion.h) come behind these.
+// Fused handlers (fusion.h) come after these.
 inline constexpr uint32_t kFirstFused = kHandlerCount + 5;
 inline constexpr uint32_t kHandlerLimit = kFirstFused + 2048;
 static_assert(kHandlerLimit <= 65536, "a handler number fits the op field");

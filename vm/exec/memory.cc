@@ -10,7 +10,7 @@ namespace vm {
 namespace {
 
 constexpr size_t kBytes = size_t{1} << 32;
-// Behind the last offset: the longest value (kMaxTypeBytes) and any displacement.
+// After the last offset: the longest value (kMaxTypeBytes) and any displacement.
 constexpr size_t kGuard = size_t{3} << 30;
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Far operands, addresses, loads and stores through them, strings.
 //
-// Addresses are 32-bit and wrap; 16-bit displacements are added behind that. With
-// the guard behind data memory nothing here can touch other memory of the process,
+// Addresses are 32-bit and wrap; 16-bit displacements are added after that. With
+// the guard after data memory nothing here can touch other memory of the process,
 // whatever an address holds.
 #pragma once
 

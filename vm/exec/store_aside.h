@@ -1,6 +1,6 @@
 // A store of a POU's version that may write forced variables (vm/load/forced_code.h), beside the
 // code: it is executed there, the variables get their forced values again, and the POU goes on
-// behind it. There is no safe point in between.
+// after it. There is no safe point in between.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct StoreAside {
     const uint8_t* bytes = nullptr;
     uint8_t mask = 0;
   };
-  ir::Unit units[3];  // the store, decoded, and behind it one that restores
+  ir::Unit units[3];  // the store, decoded, and after it one that restores
   const ir::Unit* back = nullptr;
   std::vector<Value> values;
 };

@@ -1,5 +1,5 @@
 // Boolean logic in a straight line as a series of truth tables: one dispatch for all of it, and no
-// branch that depends on what is computed (docs/adr/0028-truth-tables.md). The series stands behind
+// branch that depends on what is computed (docs/adr/0028-truth-tables.md). The series stands after
 // the units of its POU; vm/load/truth_tables.h makes it.
 //
 //   in the code:  the first unit has the handler kTruthTables, in `bc` how many units on the

@@ -24,7 +24,7 @@ bool parse_whole(std::string_view text, T& value, int base = 10) {
   return code == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
-// "12", "12.5": six digits behind the point are nanoseconds.
+// "12", "12.5": six digits after the point are nanoseconds.
 bool parse_time(std::string_view text, int64_t& ns) {
   if (text.starts_with('-')) return false;
   const size_t point = std::min(text.find('.'), text.size());
@@ -123,7 +123,7 @@ class CsvParser {
         out_.columns_.push_back(*address);
       }
     });
-    if (cells_ == 0) fail(0, "no column behind `time_ms`");
+    if (cells_ == 0) fail(0, "no column after `time_ms`");
   }
 
   void row(std::string_view line) {
@@ -162,7 +162,7 @@ class CsvParser {
   std::string file_;
   std::string_view text_;
   size_t line_ = 0;
-  size_t cells_ = 0;  // behind time_ms
+  size_t cells_ = 0;  // after time_ms
   size_t lost_column_ = kNone;
   std::string error_;
   CsvInputs out_;

@@ -1,7 +1,7 @@
 // Globals of a CONFIGURATION between its resources, which run in one process with a control thread
 // and data memory each (docs/adr/0017-resources.md).
 //
-// Behind each of its cycles a resource publishes all that it writes and another one reads, as one
+// After each of its cycles a resource publishes all that it writes and another one reads, as one
 // block; when a cycle of the other one begins, the newest block is taken. So a scan sees values of
 // one cycle of the writer, whole, and they do not change while it runs. Neither side waits, locks
 // or allocates: between each two versions that meet there is a triple buffer.
@@ -86,7 +86,7 @@ class ResourcePort : public IoPort {
   void publish_globals(const SharedGlobals&, const uint8_t* memory) override {
     exchange_.publish(resource_, memory);
   }
-  // Behind the rows of the devices, with the driver "resource": one for each other resource that it
+  // After the rows of the devices, with the driver "resource": one for each other resource that it
   // takes values from or has a type in common with that differs; and one, in the state
   // kStagedState, for each variable that a prepared version would no longer exchange.
   std::vector<DeviceStatus> status() const override;

@@ -1,6 +1,6 @@
 // Layout of the shared memory that a controller exchanges with another process (docs/IO.md): a
 // header, then two blocks. Each block has one writer and any number of readers, and a sequence
-// lock: odd while it is written, two more behind each write. For both sides.
+// lock: odd while it is written, two more after each write. For both sides.
 #pragma once
 
 #include <atomic>
@@ -29,7 +29,7 @@ inline size_t shared_block_size(size_t bytes) { return sizeof(SharedBlock) + (by
 
 inline uint64_t* shared_words(SharedBlock* block) { return reinterpret_cast<uint64_t*>(block + 1); }
 
-// The first `size` bytes of the block. Each word is released behind the odd sequence.
+// The first `size` bytes of the block. Each word is released after the odd sequence.
 inline void shared_write(SharedBlock* block, const uint8_t* bytes, size_t size, uint64_t now_ns) {
   const uint64_t sequence = block->sequence.load(std::memory_order_relaxed) | 1;
   block->sequence.store(sequence, std::memory_order_relaxed);

@@ -26,7 +26,7 @@ struct SlotLabel {
   Start unit{};     // identity of the POU (E1)
   Start version{};  // the image that it was written for
   static Start start_of(const base::Digest& digest);
-  // Zeros behind it.
+  // Zeros after it.
   static base::Digest digest_of(const Start& start);
 };
 

@@ -1,7 +1,7 @@
 // The code of a generation for as long as some of its variables are forced: versions of the POUs
 // that write them, so that every reader finds the forced value all through a scan
 // (docs/adr/0026-forced-versions.md). A store that can only lead to a forced variable is no
-// operation in a version, and machine code is made of it. Behind any other store that may write
+// operation in a version, and machine code is made of it. After any other store that may write
 // one, that gets its value again; such a version is interpreted. Made off the control thread; it
 // takes the place of the generation's own code between two scans, by one store.
 #pragma once

@@ -57,7 +57,7 @@ bool same_units(const ir::Image& a, const ir::Image& b, uint32_t number) {
                     b.code.begin() + y.first_unit);
 }
 
-// Puts `found` behind what is in `all`, and says where: the first and how many.
+// Puts `found` after what is in `all`, and says where: the first and how many.
 template <class T>
 void append(std::vector<T>& all, const std::vector<T>& found, uint32_t& first, uint32_t& count) {
   first = static_cast<uint32_t>(all.size());

@@ -113,7 +113,7 @@ struct DataTables {
 
 // A cold start's data: `memory` is all zero before.
 void write_initial_data(const ir::Image& image, uint8_t* memory);
-// The values of all RETAIN ranges, one behind the other, in the order and size that the image has.
+// The values of all RETAIN ranges, one after the other, in the order and size that the image has.
 void write_retained(const ir::Image& image, base::ByteSpan values, uint8_t* memory);
 
 class Generation {

@@ -76,7 +76,7 @@ void LastReads::begin_stretch(bool all_live) {
   all_live_ = all_live;
 }
 
-// What holds a value at a merge may be read behind it; nothing else is.
+// What holds a value at a merge may be read after it; nothing else is.
 void LastReads::arrive(const ir::LinkedPou& pou, uint32_t unit) {
   const ir::Merge* const merge = merge_at(pou, unit);
   if (merge == nullptr) return begin_stretch(true);
@@ -85,7 +85,7 @@ void LastReads::arrive(const ir::LinkedPou& pou, uint32_t unit) {
 
 void LastReads::pass(const ir::LinkedPou& pou, const ir::Unit& u, uint32_t unit) {
   const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
-  // The ways out of a SWITCH are the jumps behind it, and what is behind those.
+  // The ways out of a SWITCH are the jumps after it, and what is after those.
   if (row.ends) begin_stretch(is_switch(u.opcode()));
   if (row.b.kind == FieldKind::kRel32) arrive(pou, unit + 1 + u.bc());
   const auto in_frame = [](const ir::Field& field, Base base) {

@@ -15,7 +15,7 @@ class LastReads {
   // The code of a verified POU, whose frame is that of `pou`.
   LastReads(const ir::LinkedPou& pou, std::span<const ir::Unit> code);
 
-  // Is the value that the instruction reads through that field, a BOOL in the frame, dead behind
+  // Is the value that the instruction reads through that field, a BOOL in the frame, dead after
   // it? The same for `a` says that nobody reads what it writes there.
   bool ends_a(uint32_t unit) const { return (dead_[unit] & 1) != 0; }
   bool ends_b(uint32_t unit) const { return (dead_[unit] & 2) != 0; }

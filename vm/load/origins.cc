@@ -96,7 +96,7 @@ ir::Region OriginWalk::region(uint32_t slot) const {
   return there ? found->region : ir::Region{};
 }
 
-// An address `by` bytes behind that in the slot, of something with so many bytes.
+// An address `by` bytes after that in the slot, of something with so many bytes.
 Origins OriginWalk::moved(uint32_t slot, uint64_t by, uint64_t size) const {
   Origins origins = of(slot);
   for (Origin& origin : origins) {

@@ -34,7 +34,7 @@ using Origins = std::vector<Origin>;  // it is one of these
 class OriginWalk {
  public:
   OriginWalk(const ir::Image& image, const ir::LinkedPou& pou);
-  // To be told of every unit: enter() before anything is asked about it, pass() behind that.
+  // To be told of every unit: enter() before anything is asked about it, pass() after that.
   void enter(uint32_t unit);
   void pass(uint32_t unit);
   // Of the address or string in that slot of the own frame, or of the next one.

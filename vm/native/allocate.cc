@@ -261,7 +261,7 @@ void Allocator::node(uint32_t number) {
 
 void Allocator::end(Block block) {
   const End& e = f_.blocks[block].end;
-  // What the ways from here want, asked first: questions behind this position forget it.
+  // What the ways from here want, asked first: questions after this position forget it.
   wanted_.clear();
   for (const Val v : live_) {
     if (next_use(v, position_) != kNone) wanted_.push_back(v);

@@ -82,7 +82,7 @@ class Target {
   uint32_t floats = 0;
 };
 
-// Loads that one operation alone wants, close behind them, become a part of it. The last pass.
+// Loads that one operation alone wants, close after them, become a part of it. The last pass.
 void fold_loads(Function& function, const Target& target);
 
 struct AllocatorOptions {

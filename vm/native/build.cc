@@ -277,7 +277,7 @@ void Builder::forget_shared() {
   }
 }
 
-// Behind a loop its variables are in memory again.
+// After a loop its variables are in memory again.
 void Builder::store_behind(uint32_t loop) {
   if (loop == kNone || f_.blocks[block_].loop == loop) return;
   for (const uint32_t v : facts_.deferred(loop)) store_slot(v);

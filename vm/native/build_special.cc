@@ -149,7 +149,7 @@ void Builder::call_instance(CallKind kind, uint32_t pou, const Mem& slot, Val id
   call(kind, pou, made);
 }
 
-// Before a call everything is in memory, and behind it everything is read from there again.
+// Before a call everything is in memory, and after it everything is read from there again.
 void Builder::call(CallKind kind, uint32_t pou, Node made) {
   if (is_slow(kind, pou)) kind = CallKind::kSlow;
   made.call = static_cast<uint32_t>(f_.calls.size());

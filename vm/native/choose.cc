@@ -66,7 +66,7 @@ class Chooser {
     return true;
   }
 
-  // Where both ways meet: behind both, or one leads past the other. kNone: nowhere near.
+  // Where both ways meet: after both, or one leads past the other. kNone: nowhere near.
   Block join_of(const End& end) const {
     for (uint32_t i = 0; i < 2; ++i) {
       const Block way = end.target[i];

@@ -9,7 +9,7 @@ namespace {
 using ir::Opcode;
 
 constexpr size_t kMostEffectNodes = 200'000;  // of one POU with everything in it
-// An execution that was interrupted in a body goes on in machine code behind a call or at a loop;
+// An execution that was interrupted in a body goes on in machine code after a call or at a loop;
 // so one call in so many stays one.
 constexpr uint32_t kCallsBetween = 32;
 

@@ -330,7 +330,7 @@ bool Facts::find_liveness(std::string& why) {
       }
     }
   };
-  // Without loops the first walk has seen everything that comes behind a block.
+  // Without loops the first walk has seen everything that comes after a block.
   const bool once = loops_.empty();
   for (bool changed = true; changed;) {
     changed = false;

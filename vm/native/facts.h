@@ -143,7 +143,7 @@ class Facts {
 
   const std::vector<UnitRange>& blocks() const { return blocks_; }
   // A SWITCH is a tree of comparisons of its value less `low`: its own block and those of the JMPs
-  // behind it are the forks. Null: the block is no part of one.
+  // after it are the forks. Null: the block is no part of one.
   const Fork* fork(Block block) const {
     const auto found = forks_.find(block);
     return found == forks_.end() ? nullptr : &found->second;
@@ -182,7 +182,7 @@ class Facts {
     return live_in_[size_t{block} * words_ + variable / 64] >> (variable % 64) & 1;
   }
   bool live_out(Block block, uint32_t variable) const;
-  // Visits the slots that are live behind the unit, which calls or may leave.
+  // Visits the slots that are live after the unit, which calls or may leave.
   template <class Visit>
   void each_live_behind(uint32_t unit, Visit visit) const {
     const uint32_t* const row = live_row_.find(unit);

@@ -14,7 +14,7 @@ class Folder {
   void run() {
     count();
     for (BasicBlock& block : f_.blocks) {
-      uint32_t barrier = 0;  // nothing in front of it may be read behind it
+      uint32_t barrier = 0;  // nothing in front of it may be read after it
       for (uint32_t i = 0; i < block.nodes.size(); ++i) {
         Node& n = f_.nodes[block.nodes[i]];
         if (n.op == Op::kLoad) at_[n.result] = i;

@@ -7,7 +7,7 @@
 namespace vm::native {
 
 // A load of what a store or a load before has brought becomes that value. The stores stay: memory
-// is right. Nothing is known behind calls and where loops begin.
+// is right. Nothing is known after calls and where loops begin.
 void forward_memory(Function& function);
 
 }  // namespace vm::native

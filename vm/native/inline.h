@@ -2,7 +2,7 @@
 //
 // What is there is what the call would do: arguments and results travel through the callee's frame,
 // fuel is taken, and an exit inside makes the callee's activation as if it had been called. The
-// interpreter then goes on behind the call, until the next unit where machine code can be entered.
+// interpreter then goes on after the call, until the next unit where machine code can be entered.
 #pragma once
 
 #include <functional>

@@ -10,7 +10,7 @@
 namespace vm::native {
 
 struct JumpTable {
-  // Way number `target` of a fork, behind whose moves it goes on.
+  // Way number `target` of a fork, after whose moves it goes on.
   struct Way {
     Block block = 0;
     uint32_t target = 0;

@@ -170,7 +170,7 @@ struct Exit {
   uint32_t unit = 0;
   bool fuel = false;       // its unit takes fuel that has just been taken
   uint32_t fuel_back = 0;  // was taken for turns of a loop that are not done
-  // Inside of an inlined body (Function::inlined): the activation is made first. Behind its slots
+  // Inside of an inlined body (Function::inlined): the activation is made first. After its slots
   // come the instance's ID and the pointer to it when it has one.
   uint32_t inlined = kNone;
   std::vector<SlotValue> slots;
@@ -263,7 +263,7 @@ struct Function {
   std::vector<Inlined> inlined;
 };
 
-// The block that execution falls into behind `b`: what nothing leads to has no code.
+// The block that execution falls into after `b`: what nothing leads to has no code.
 inline Block next_block(const Function& f, Block b) {
   Block next = b + 1;
   while (next + 1 < f.blocks.size() && f.blocks[next].end.kind == EndKind::kUnreachable &&

@@ -38,7 +38,7 @@ class Hoister {
   }
 
   void loop(const Loop& l) {
-    // Behind a call nothing but memory is left.
+    // After a call nothing but memory is left.
     for (Block b = l.head; b <= l.last; ++b) {
       for (const uint32_t number : f_.blocks[b].nodes) {
         if (f_.nodes[number].op == Op::kCall) return;

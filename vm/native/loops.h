@@ -12,7 +12,7 @@ bool is_operation(const Node& node);
 // execution too, so what it computes holds in the whole loop.
 void insert_preheaders(Function& function);
 
-// Behind insert_preheaders(): what a dominating block computes or checks is not done again.
+// After insert_preheaders(): what a dominating block computes or checks is not done again.
 void number_again(Function& function);
 
 // Blocks that every whole turn goes through, from the head on.
@@ -28,7 +28,7 @@ void drop_proven_checks(Function& function);
 // interpreter at the loop's head, which finds out what is wrong, and when.
 void hoist(Function& function);
 
-// Behind hoist(): constants of addresses into displacements, and what does not change of a sum that
+// After hoist(): constants of addresses into displacements, and what does not change of a sum that
 // an access in a loop has for its address in front of it.
 void split_addresses(Function& function);
 

@@ -185,7 +185,7 @@ class Turns {
     made.in[1] = constant(sum, made.width);
   }
 
-  // What the turns behind it had taken is given back.
+  // What the turns after it had taken is given back.
   uint32_t exit(uint32_t number, uint32_t turn) {
     Exit made = f_.exits[number];
     for (SlotValue& slot : made.slots) slot.value = now(real(slot.value));

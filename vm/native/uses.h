@@ -15,7 +15,7 @@ class Uses {
   uint32_t begin_of(Block block) const { return begins_[block]; }  // its parameters
   uint32_t end_of(Block block) const { return ends_[block]; }      // its last instruction
   uint32_t loop_end(uint32_t loop) const { return ends_[function_.loops[loop].last]; }
-  // The next use at or behind the position that advance() has reached; kNone: none.
+  // The next use at or after the position that advance() has reached; kNone: none.
   uint32_t next(Val v) const {
     const uint32_t at = cursor_[v];
     return at < first_[v + 1] ? uses_[at] : kNone;
@@ -25,7 +25,7 @@ class Uses {
     uint32_t& at = cursor_[v];
     while (at < first_[v + 1] && uses_[at] <= position) ++at;
   }
-  // Values that something behind the block's beginning uses, whichever way leads there; sorted.
+  // Values that something after the block's beginning uses, whichever way leads there; sorted.
   // Constants and the block's own parameters are none of them.
   std::span<const Val> live_in(Block block) const {
     return {live_.data() + first_live_[block], live_.data() + first_live_[block + 1]};

@@ -46,7 +46,7 @@ struct ControllerOptions {
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
   uint64_t code_limit = uint64_t{2} << 30;  // bytes of all code slots (two for each POU)
   TierOptions tier = {};
-  bool halted = false;  // begins as behind a fault: nothing runs before restart()
+  bool halted = false;  // begins as after a fault: nothing runs before restart()
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
   Timeline* timeline = nullptr;  // is told of all cycles; outlives the controller
   EventRing* events = nullptr;  // gets traps and overruns; outlives the controller
@@ -83,7 +83,7 @@ struct TaskStatus {
   TimeSummary delay;      // from the release to the start: jitter
   bool stopped = false;   // by a trap
   bool freewheeling = false;
-  bool once = false;  // start code: at cold start and behind changes
+  bool once = false;  // start code: at cold start and after changes
   int64_t recent_ns = 0;  // the longest run of the last scans (recent_longest.h)
   TaskActivity activity = {};  // at another instant than the rest (Controller::activity)
 };
@@ -117,7 +117,7 @@ class Controller {
   // that it had nothing to do, or another one might not be over when the cycle begins. A unit takes
   // kIdleUnitNs at most, and counts as one safe point for a virtual clock.
   void run_idle(const std::function<bool()>& unit);
-  // At a boundary, behind work there that no scan did: Clock::worked.
+  // At a boundary, after work there that no scan did: Clock::worked.
   void worked(int64_t expected_ns);
   uint64_t cycles() const;
   bool at_boundary() const;
@@ -197,7 +197,7 @@ class Controller {
   std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next, Memory* data = nullptr);
   // Off the control thread: devices that only a version which never runs again has are closed.
   void settle_devices();
-  // Off the control thread, behind a switch that did not wait for machine code (Making::kBeside):
+  // Off the control thread, after a switch that did not wait for machine code (Making::kBeside):
   // begins to make that of the version that runs now.
   void make_native();
   std::vector<DeviceStatus> devices() const;
@@ -209,20 +209,20 @@ class Controller {
   // fault nothing is done.
   base::Status enter();
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
-  // longer than `limit_ns`, the rest is left out and the old program can run on behind construct().
+  // longer than `limit_ns`, the rest is left out and the old program can run on after construct().
   base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);
-  // Behind it, when all values are as before: outputs are, too.
+  // After it, when all values are as before: outputs are, too.
   void values_put_back();
-  // The same of all there are, and their outputs are sent: nothing runs behind it.
+  // The same of all there are, and their outputs are sent: nothing runs after it.
   base::Status leave_all(int64_t limit_ns);
 
   // The last thing before a controller ends, also in the middle of a scan. What would be held for
   // a time takes its value: nobody is there when it is over.
   void make_outputs_safe();
 
-  // At a boundary, also behind a fault: all tasks run again. Cold and warm: instances leave first,
+  // At a boundary, also after a fault: all tasks run again. Cold and warm: instances leave first,
   // unless a fault ended everything, and start code makes them anew in the next cycle. Forces stay.
-  // Returns the error of leave_all(), behind which the restart is made all the same.
+  // Returns the error of leave_all(), after which the restart is made all the same.
   base::Status restart(Restart kind, int64_t exit_limit_ns);
 
  private:

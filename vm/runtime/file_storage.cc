@@ -36,7 +36,7 @@ int sync_directory(const std::string& path) {
 }
 
 constexpr int kSafely = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;
-constexpr const char* kFresh = "_new";  // behind the name, until it has its place
+constexpr const char* kFresh = "_new";  // after the name, until it has its place
 
 }  // namespace
 

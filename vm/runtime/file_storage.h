@@ -16,7 +16,7 @@ class FileStorage : public Storage {
  public:
   explicit FileStorage(std::string directory) : directory_(std::move(directory)) {}
 
-  // kFileUnwritable, kFileUnreadable. A file that cannot be written can be read behind the error.
+  // kFileUnwritable, kFileUnreadable. A file that cannot be written can be read after the error.
   base::Status open(std::string_view name, uint64_t size) override;
   base::Result<uint64_t> size(std::string_view name) override;
   base::Result<base::Bytes> read(std::string_view name, uint64_t offset, uint64_t size) override;

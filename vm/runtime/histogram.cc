@@ -5,7 +5,7 @@
 
 namespace vm {
 
-// Below 8 ns one class for each; then the three bits behind the leading one.
+// Below 8 ns one class for each; then the three bits after the leading one.
 uint32_t Histogram::class_of(uint64_t ns) {
   if (ns < 8) return static_cast<uint32_t>(ns);
   const auto exponent = static_cast<uint32_t>(std::bit_width(ns) - 1);

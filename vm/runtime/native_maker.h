@@ -28,7 +28,7 @@ class NativeMaker {
   void start(const Generation& of, const TierOptions& tier, std::optional<MadeCode> like = {});
   // What is not made yet is not made; waits for the POU that is being made.
   void stop();
-  // Behind stop(), once: what it had made, for start() of the version that was built on that one,
+  // After stop(), once: what it had made, for start() of the version that was built on that one,
   // or that it was built on.
   std::optional<MadeCode> take_stopped();
   void wait() const;
@@ -38,7 +38,7 @@ class NativeMaker {
   uint32_t to_make() const;
   // Control thread, between scans: what is made takes its place by one store. Executions that are
   // suspended go on with what they began with. With `at` (TierOptions::take_at), not before and at
-  // once behind that cycle; then no other thread calls anything.
+  // once after that cycle; then no other thread calls anything.
   void take(TaskTables& tables, uint64_t at, uint64_t cycle) const;
 
  private:

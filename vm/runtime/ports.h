@@ -52,7 +52,7 @@ struct DeviceStatus {
 };
 
 // Field devices: the process image as the driver sees it. Called by the control thread outside of
-// all scans, or before and behind one while others are suspended (B12); must not block.
+// all scans, or before and after one while others are suspended (B12); must not block.
 class IoPort {
  public:
   virtual ~IoPort() = default;
@@ -64,11 +64,11 @@ class IoPort {
   virtual void use(const base::Digest& /*version*/) {}
   // Off the control thread: nothing but what is used will be needed any more.
   virtual void settle() {}
-  // Control thread, at a boundary behind each cycle: for devices that exchange %M, or let others
+  // Control thread, at a boundary after each cycle: for devices that exchange %M, or let others
   // write %Q. `memory` is data memory, `image` says where variables are in it.
   virtual void at_boundary(const ProcessImage& /*image*/, uint8_t* /*memory*/) {}
   // Control thread, at a boundary: when a cycle begins, values of globals that other resources
-  // write; behind it, those that this one writes (shared_globals.h).
+  // write; after it, those that this one writes (shared_globals.h).
   virtual void take_globals(const SharedGlobals& /*globals*/, uint8_t* /*memory*/) {}
   virtual void publish_globals(const SharedGlobals& /*globals*/, const uint8_t* /*memory*/) {}
   // Off the control thread.
@@ -76,14 +76,14 @@ class IoPort {
 
   // Fills `inputs` (%I bytes) with the newest values.
   virtual void receive(std::span<uint8_t> inputs) = 0;
-  // Control thread, behind each receive(): the byte of each task whose device was online and has
+  // Control thread, after each receive(): the byte of each task whose device was online and has
   // been lost since becomes 1; `tasks` are those of the version that is used, in its order.
   virtual void lost_tasks(std::span<uint8_t> /*tasks*/) {}
   // Takes a consistent copy of `outputs` (%Q bytes).
   virtual void send(std::span<const uint8_t> outputs) = 0;
 };
 
-// Durable files of fixed size, by name ("slot_a", "control_0"). Nothing is repeated behind a
+// Durable files of fixed size, by name ("slot_a", "control_0"). Nothing is repeated after a
 // failure: what a failed call leaves in its file is unknown, up to a mixture, and only replace()
 // makes it known again. What is written is durable when sync() of that file has returned without an
 // error, and in no order before.
@@ -96,7 +96,7 @@ class Storage {
 
   virtual ~Storage() = default;
   // The file is there, durably, with room for at least `size` bytes: what it holds stays, new bytes
-  // are zero. Before anything else is done with it. Behind an error it may still be readable.
+  // are zero. Before anything else is done with it. After an error it may still be readable.
   virtual base::Status open(std::string_view name, uint64_t size) = 0;
   // Of a file, opened or not; kFileNotFound.
   virtual base::Result<uint64_t> size(std::string_view name) = 0;
@@ -107,7 +107,7 @@ class Storage {
   // An error too when what was written can no longer be found by its name (check()).
   virtual base::Status sync(std::string_view name) = 0;
   // A new file of `size` bytes, these pieces and zeros, takes the place of whatever the name leads
-  // to. It is durable when it returns without an error; behind an error or a cut the name leads to
+  // to. It is durable when it returns without an error; after an error or a cut the name leads to
   // the old file or to the whole new one. Nothing of the old one is used, so calls for it may have
   // failed, and it may be gone.
   virtual base::Status replace(std::string_view name, uint64_t size,

@@ -14,7 +14,7 @@ struct RealTimeOptions {
   uint32_t fifo_priority = 0;   // SCHED_FIFO 1..99; 0: as the process is
   std::optional<uint32_t> cpu;  // the control thread stays there
   bool lock_memory = false;     // nothing is swapped out, and what is used is there from the start
-  bool confined = false;        // thread_filter.h, behind all else
+  bool confined = false;        // thread_filter.h, after all else
 };
 
 // Of the calling thread; kNotPermitted, kUsage for a processor that is not there.

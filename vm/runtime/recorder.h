@@ -85,7 +85,7 @@ class Recorder : public Clock, public IoPort {
 
   base::Bytes local_;  // of the control thread, not yet handed over
   // A request's first job is done, and note() or forget_jobs() is still to come: what it did is in
-  // the cycles behind it, so they are not handed over before it.
+  // the cycles after it, so they are not handed over before it.
   std::atomic<bool> holding_{false};
 
   std::mutex mutex_;  // of what follows; never held while the file is written

@@ -42,7 +42,7 @@ struct RecordedReception {
 // What the controller saw of the clock and of its devices.
 struct Observed {
   std::vector<int64_t> clock;  // results of Clock::now_ns(), in order
-  ByteChanges changed;  // input bytes that differ from before, one reception behind the other
+  ByteChanges changed;  // input bytes that differ from before, one reception after the other
   ByteChanges outputs;  // %Q and %M that others wrote at the boundary
   ByteChanges markers;
   ByteChanges globals;  // that other resources write, in the order of SharedGlobals::gather_read
@@ -55,9 +55,9 @@ struct Observed {
 struct RecordedCycle {
   uint64_t number = 0;
   Observed observed;
-  uint32_t state = 0;  // StateSum behind it
+  uint32_t state = 0;  // StateSum after it
 };
-// A request of the control channel that changed something, behind that cycle.
+// A request of the control channel that changed something, after that cycle.
 struct RecordedRequest {
   uint64_t cycle = 0;
   std::vector<int64_t> clock;

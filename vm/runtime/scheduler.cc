@@ -149,7 +149,7 @@ void Scheduler::pause() {
   ++cycles_;
 }
 
-// A cycle that was lengthened moves all that come behind it: nobody has missed a release.
+// A cycle that was lengthened moves all that come after it: nobody has missed a release.
 void Scheduler::end_cycle() {
   ++cycles_;
   if (!std::exchange(lengthened_, false) || looked_ns_ <= next_cycle_ns_) return;
@@ -175,7 +175,7 @@ void Scheduler::begin_cycle() {
   note(Moment::kCycle, cycle_start_ns_);
   pack_stale_outputs();
   take_waiting_outputs();
-  // The first cycle behind a start or a change has no inputs of the cycle before.
+  // The first cycle after a start or a change has no inputs of the cycle before.
   send_pending_ = tables_->schedule == ir::Schedule::kRunFirst;
   receive_pending_ = send_pending_ && std::exchange(received_ahead_, false);
   if (!receive_pending_) {

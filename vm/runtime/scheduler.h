@@ -17,19 +17,19 @@ class Scheduler {
 
   // At cold start, before the first cycle: the tasks that run once (ir::Task), to their end.
   void run_start_tasks();
-  // Behind a switch: the next cycle begins with them.
+  // After a switch: the next cycle begins with them.
   void start_in_next_cycle(bool anew) {
     start_anew_ = anew || starts_anew();
     start_pending_ = true;
   }
   bool start_pending() const { return start_pending_; }
-  bool starts_anew() const { return start_pending_ && start_anew_; }  // behind a restart
+  bool starts_anew() const { return start_pending_ && start_anew_; }  // after a restart
   // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
   // nothing else: false.
   bool run_exits(int64_t limit_ns);
   // The same for instances that are new, at the time of the next cycle. Only a trap ends them.
   bool run_inits();
-  // At a boundary, also behind a fault: every task runs again, in its phase; none has missed a
+  // At a boundary, also after a fault: every task runs again, in its phase; none has missed a
   // release until then.
   void restart();
   // All of them, and they are sent. `for_good`: holds for a time are over at once.
@@ -39,7 +39,7 @@ class Scheduler {
   void outputs_put_back() { outputs_stale_ = true; }  // all of them
   // What is complete.
   void send_outputs();
-  // Behind a fault: only outputs that are held for a time are looked after. Where a task starts
+  // After a fault: only outputs that are held for a time are looked after. Where a task starts
   // again at once and nothing else is inside a scan, it returns at this boundary in the middle of
   // the cycle, and the next call goes on: a task that is always late would leave no other one.
   void run_cycle();
@@ -151,7 +151,7 @@ class Scheduler {
   int64_t received_ns_ = 0;     // when inputs were
   bool outputs_stale_ = false;  // new tables: pack before the next refresh
   bool starting_ = false;
-  bool send_pending_ = false;     // in this cycle, behind what is due (ir::Schedule)
+  bool send_pending_ = false;     // in this cycle, after what is due (ir::Schedule)
   bool receive_pending_ = false;  // then
   bool received_ahead_ = false;   // by the cycle before, for what is due in the next one
   bool receive_now_ = false;      // a version that came in a pause has no inputs yet

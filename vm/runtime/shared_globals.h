@@ -42,7 +42,7 @@ class SharedGlobals {
   uint32_t read_bytes_ = 0;
 };
 
-// Bytes of `runs` in data memory, one behind the other, from or to a block; behind its last byte.
+// Bytes of `runs` in data memory, one after the other, from or to a block; after its last byte.
 uint8_t* gather(std::span<const ir::PlainRun> runs, const uint8_t* memory, uint8_t* to);
 const uint8_t* scatter(std::span<const ir::PlainRun> runs, const uint8_t* from, uint8_t* memory);
 

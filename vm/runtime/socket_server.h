@@ -27,7 +27,7 @@ class Service {
   virtual void ended(uint64_t /*session*/) {}
   // On the server's thread. `keep_open` false closes the connection after the answer.
   virtual base::Bytes answer(base::ByteSpan request, bool& keep_open) = 0;
-  // On the server's thread, behind answers and at least as often as keep_up_ms() says.
+  // On the server's thread, after answers and at least as often as keep_up_ms() says.
   virtual void keep_up() {}
   virtual int keep_up_ms() const { return 1000; }
 

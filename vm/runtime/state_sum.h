@@ -1,4 +1,4 @@
-// A checksum of all values of a program, behind every cycle of a recording: of variables, not of
+// A checksum of all values of a program, after every cycle of a recording: of variables, not of
 // the room between them, where an earlier version may have left anything.
 #pragma once
 

@@ -110,7 +110,7 @@ class Runner {
     }
   }
 
-  // All tasks run again, also behind a trap.
+  // All tasks run again, also after a trap.
   void restart(const std::string& kind, std::vector<std::string>& output) {
     constexpr const char* kKinds[] = {"cold", "warm", "hot"};
     for (size_t i = 0; i < std::size(kKinds); ++i) {

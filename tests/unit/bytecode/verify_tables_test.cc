@@ -41,8 +41,8 @@ TEST(VerifyTables, V4_TablesThatLeadElsewhere) {
   const Code begin = kLoad + choose(1, 2);
   const Code three = jmp(2) + jmp(1) + jmp(0) + kRet;
   expect_refused(Refusal::kBadJump, "a table of 0 jumps", kLoad + choose(1, 0) + kRet, {});
-  expect_refused(Refusal::kBadJump, "behind its table", kLoad + choose(1, 4) + three, {{6, {}}});
-  expect_refused(Refusal::kBadJump, "behind its table", kLoad + choose(1, 65536) + three,
+  expect_refused(Refusal::kBadJump, "after its table", kLoad + choose(1, 4) + three, {{6, {}}});
+  expect_refused(Refusal::kBadJump, "after its table", kLoad + choose(1, 65536) + three,
                  {{6, {}}});
   expect_refused(Refusal::kBadJump, "a table of 65537 jumps", kLoad + choose(1, 65537) + three,
                  {{6, {}}});

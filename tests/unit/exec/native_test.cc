@@ -126,7 +126,7 @@ END_PROGRAM)"));
 }
 
 // Left in the middle of a body that stands in the place of a call, an execution is in machine code
-// again at the loop's next turn, and in a straight line behind one call of 32 that is one.
+// again at the loop's next turn, and in a straight line after one call of 32 that is one.
 TEST(Native, AnInterruptedExecutionIsSoonInMachineCodeAgain) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
   const std::string block = R"(

@@ -84,7 +84,7 @@ TEST(Edits, D3_case77_ThreeEditsThereAndBack) {
   plant.undo();
   plant.run(1);
   EXPECT_EQ(plant.driver().on_trial(), 2u);
-  EXPECT_EQ(plant.get("Main.p.turns"), "3");  // two scans of the third version, one behind undo
+  EXPECT_EQ(plant.get("Main.p.turns"), "3");  // two scans of the third version, one after undo
   EXPECT_EQ(plant.get("Main.wide"), "32767");
   EXPECT_EQ(station_address(plant, "Main.keep"), edits.keep);
 

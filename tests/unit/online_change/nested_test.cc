@@ -44,7 +44,7 @@ struct Cost {
   tests::HeapUse heap;   // of planning
 };
 
-// Of the plan from `before` to `after`; `path` has a value, and must have it behind the change.
+// Of the plan from `before` to `after`; `path` has a value, and must have it after the change.
 Cost cost_of(const std::string& before, const std::string& after, const std::string& path) {
   Plant plant(before);
   plant.set(path, "77");

@@ -194,7 +194,7 @@ pou program Main self Main
   EXPECT_EQ(plant.get("Main.block.b"), "TRUE");
 }
 
-// Start code runs at cold start and behind changes of variables, not behind those of code alone.
+// Start code runs at cold start and after changes of variables, not behind those of code alone.
 TEST(Objects, StartTasksRunBehindChangesOfVariables) {
   const auto text = [](const char* amount) {
     Parts parts;

@@ -86,7 +86,7 @@ TEST(References, case29_case30_case32_follow) {
 }
 
 // The ID of what went is used again; a reference to it stays NULL.
-// Past the end of a variable is past its end behind the change, whether it grows, shrinks or stays;
+// Past the end of a variable is past its end after the change, whether it grows, shrinks or stays;
 // after undo it is where it was, and what was set anew is led back.
 TEST(References, case30_case33_past_the_end_follows_its_variable) {
   const std::string rest =

@@ -102,7 +102,7 @@ TEST(Renames, X2_a_chain_that_begins_with_nothing_applies_where_it_can) {
 
 const std::string kLimit = "TYPE Limit : STRUCT low, high : INT; END_STRUCT END_TYPE ";
 
-// By both strategies, also what is written behind the copy; the rule is applied once.
+// By both strategies, also what is written after the copy; the rule is applied once.
 TEST(Renames, X2_parts_of_variables_move) {
   for (Strategy strategy : {Strategy::kInPlace, Strategy::kStandby}) {
     Plant plant(kLimit + program("low : INT; high : DINT; n : INT;", "n := n + 1;"));

@@ -116,7 +116,7 @@ TEST(Try, NestedTriesAndTrapsOfCallees) {
          "", {{"n", "9"}, {"kind", "1101"}});
 }
 
-// Behind a trap two instances deep, `self` and the own instance are what they were.
+// After a trap two instances deep, `self` and the own instance are what they were.
 TEST(Try, TheFrameAndTheInstanceComeBack) {
   expect(objects("  member global n : DINT\n  member global same : BOOL\n", R"(b0:
     call_method 'Base.safe', self.leaf

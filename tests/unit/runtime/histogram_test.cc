@@ -93,7 +93,7 @@ TEST(Statistics, AStartDelayCanExceedAPeriod) {
   EXPECT_EQ(plant.task("t").scans, 7u);
 }
 
-// What was measured goes on behind a change, and behind its undo.
+// What was measured goes on after a change, and after its undo.
 TEST(Statistics, GoOnThroughAChange) {
   Plant plant("PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM");
   ASSERT_TRUE(plant.ok());

@@ -149,7 +149,7 @@ TEST(IoTiming, B5_B6_EveryOutputBuffer) {
   }
 }
 
-// A scan sees the first inputs that came behind the start of the one before: a pulse of one cycle
+// A scan sees the first inputs that came after the start of the one before: a pulse of one cycle
 // is not lost because others follow it.
 TEST(IoTiming, B4_FirstUnseenKeepsTheFirst) {
   const Seen newest = run("");
@@ -238,7 +238,7 @@ TEST(IoTiming, ForcedOutputsDoNotWait) {
   }
 }
 
-// Tables that rested during a trial have seen old inputs; behind undo and restart no scan does.
+// Tables that rested during a trial have seen old inputs; after undo and restart no scan does.
 TEST(IoTiming, UndoAndRestartForgetOldInputs) {
   for (const char* buffer : kEveryBuffer) {
     SCOPED_TRACE(buffer);

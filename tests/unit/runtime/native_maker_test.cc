@@ -103,7 +103,7 @@ void expect_machine_code(Plant& plant) {
   EXPECT_EQ(plant->code().native.get(), plant->generation().native());
 }
 
-// What is prepared is interpreted, and its machine code is made behind the switch; also when
+// What is prepared is interpreted, and its machine code is made after the switch; also when
 // somebody takes the switch back before it is, or behind it.
 TEST(NativeMaker, AChangeMeanwhileDoesNotWaitForIt) {
   if (!vm::native::is_available()) GTEST_SKIP() << "no native tier for this machine";

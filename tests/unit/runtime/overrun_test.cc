@@ -251,7 +251,7 @@ END_RESOURCE END_CONFIGURATION
       ASSERT_TRUE(timed.change(source(policy)));
     }
     timed.run_until(40);
-    // Releases at 0, 10, 20, 30 and 40 ms; behind the restart, the last three.
+    // Releases at 0, 10, 20, 30 and 40 ms; after the restart, the last three.
     const vm::TaskStatus low = timed.task("Low");
     EXPECT_EQ(low.missed, policy == "at_once" ? 1u : policy == "skip" ? 2u : 0u);
     EXPECT_EQ(low.scans, policy == "at_once" ? 4u : 3u);

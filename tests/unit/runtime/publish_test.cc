@@ -189,7 +189,7 @@ TEST(Publish, ForcesFollowByNameAndValue) {
 }
 
 // An output that moves is at its new place, and what has no variable any more is safe, both in the
-// first refresh behind the switch; what is held stays, and later gets its value.
+// first refresh after the switch; what is held stays, and later gets its value.
 TEST(Publish, case46_removed_outputs_become_safe_without_a_glitch) {
   const std::vector<ir::SafeOutput> safe = {
       {1, 1, ir::SafeKind::kValue, 1, 0},
@@ -217,7 +217,7 @@ TEST(Publish, case46_removed_outputs_become_safe_without_a_glitch) {
     for (size_t i = 0; i < 5; ++i) text += std::to_string(plant.io.output(i)) + " ";
     return text;
   };
-  EXPECT_EQ(outputs(), "6 5 6 0 1 ");  // 10 ms behind the switch
+  EXPECT_EQ(outputs(), "6 5 6 0 1 ");  // 10 ms after the switch
   EXPECT_EQ(outputs(), "6 5 9 0 1 ");  // 20 ms
   plant->publish(std::move(old));
   EXPECT_EQ(outputs(), "1 5 6 7 1 ");

@@ -1,4 +1,4 @@
-// Cold, warm and hot start, behind a fault of the whole controller.
+// Cold, warm and hot start, after a fault of the whole controller.
 #include "tests/unit/runtime/plant.h"
 
 namespace runtime_test {

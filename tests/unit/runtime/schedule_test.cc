@@ -113,7 +113,7 @@ TEST(Schedule, B2_InFrontOfTheConfiguration) {
 }
 
 // What is due is waited for, also in the cycles over which it lasts; a scan that has begun before
-// and a freewheeling one go on behind the exchange.
+// and a freewheeling one go on after the exchange.
 TEST(Schedule, B2_TheExchangeWaitsForWhatIsDue) {
   Logged free(
       copies(kRunFirst, "",
@@ -183,7 +183,7 @@ TEST(Schedule, B2_ForcesHoldInTheirCycle) {
   EXPECT_EQ(logged.cycles(1), "out6 in7 | ");
 }
 
-// Outputs are safe in the cycle of the trap, whether one task stops or all; behind a restart
+// Outputs are safe in the cycle of the trap, whether one task stops or all; after a restart
 // nothing runs with inputs of before.
 TEST(Schedule, B2_SafeOutputsInTheCycleOfTheTrap) {
   const std::vector<ir::SafeOutput> rows = {{0, 8, ir::SafeKind::kValue, 55, 0}};
@@ -303,7 +303,7 @@ END_RESOURCE END_CONFIGURATION
   };
   Logged at_once(source("at_once"));
   ASSERT_TRUE(at_once.controller);
-  // The first scan goes on behind the exchange of its second cycle, and the next one starts at
+  // The first scan goes on after the exchange of its second cycle, and the next one starts at
   // 12 ms with what that has brought.
   EXPECT_EQ(at_once.cycles(2), "out0 in1 out0 | out0 in2 | ");
   EXPECT_TRUE(at_once->at_boundary());

@@ -335,7 +335,7 @@ TEST(TaskPolicy, ALossTrapsTheNextScanAndOnlyThatOne) {
   EXPECT_EQ(plant.get("W.n"), "4");
 }
 
-// What was to be trapped is not known any more behind a restart; a change keeps it for the task of
+// What was to be trapped is not known any more after a restart; a change keeps it for the task of
 // that name.
 TEST(TaskPolicy, ALossIsKeptThroughAChangeAndForgottenByARestart) {
   const std::string source = R"(

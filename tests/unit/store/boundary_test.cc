@@ -116,7 +116,7 @@ std::vector<Step> commands(uint32_t strategy, uint32_t permanent) {
   return out;
 }
 
-// What boots behind a power cut is what status says, and what the state of the change says.
+// What boots after a power cut is what status says, and what the state of the change says.
 void check_what_boots(Plc& plc, sim::SimStorage& disk, const std::string& where) {
   const vm::StatusReport now = plc.status();
   const bool trial = now.change == "trial";

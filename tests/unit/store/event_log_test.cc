@@ -110,7 +110,7 @@ TEST_F(EventLogTest, R10_WhatIsNotedIsALineAndCanBeAskedFor) {
             "<4>Line: device lost: device press: refused\n");
 }
 
-// What is durable is there behind a restart, the rest is not.
+// What is durable is there after a restart, the rest is not.
 TEST_F(EventLogTest, R10_ARestartLeavesWhatIsDurable) {
   store_->note(event(Event::kStarted));
   store_->note(event(Event::kSet, "a=1"));

@@ -41,7 +41,7 @@ class KeeperTest : public ::testing::Test {
     }
   }
   int64_t value() const { return std::stoll(*controller_->get("r")); }
-  // What boots behind a power cut now.
+  // What boots after a power cut now.
   int64_t durable() const {
     sim::SimStorage left = disk_.after_cut(sim::SimStorage::Choice(disk_.dirty().size(), 0));
     Plc plc(left);

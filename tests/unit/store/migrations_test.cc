@@ -38,7 +38,7 @@ class Start : public ::testing::Test {
     disk_ = disk_.after_cut(sim::SimStorage::Choice(disk_.dirty().size(), 0));
     plc_ = std::make_unique<Plc>(disk_);
   }
-  // Behind a save, a cut, and with that on the command line.
+  // After a save, a cut, and with that on the command line.
   void start_with(const std::string& source) {
     ASSERT_TRUE(plc_->save().ok());
     const ir::VerifiedImage next = build(source, &plc_->controller().image());

@@ -29,7 +29,7 @@ std::string source(int version) {
          " END_VAR PROGRAM P VAR n : DINT; END_VAR n := n + 1; END_PROGRAM";
 }
 
-// One step of a controller's life, and what may be found behind a cut in it.
+// One step of a controller's life, and what may be found after a cut in it.
 struct Step {
   std::function<bool(std::unique_ptr<Plc>&, vm::Storage&)> run;
   std::vector<int> boots;   // versions; 0: nothing was stored yet

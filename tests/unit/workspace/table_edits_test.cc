@@ -58,10 +58,10 @@ TEST(TableEdits, E16_DeletedReorderedAndRetypedAreAllNamedTheFirstOneFirst) {
   EXPECT_EQ(between(program(kOld), program("b : INT := 5; c : REAL; d : Pair;")),
             "removed a: removed\n");
   EXPECT_EQ(between(program(kOld), program("a : INT; c : REAL; d : Pair; b : INT := 5;")),
-            "order c: it stood behind `b`\norder d: it stood behind `b`\n");
+            "order c: it stood after `b`\norder d: it stood after `b`\n");
   EXPECT_EQ(between(program(kOld), program("d : Pair; b : INT := 6; c : LREAL;")),
             "removed a: removed\ninitial b: initial value 5 -> 6\ntype c: type REAL -> LREAL\n"
-            "order d: it stood behind `c`\n");
+            "order d: it stood after `c`\n");
 }
 
 TEST(TableEdits, E16_EverySettingCounts) {
@@ -141,7 +141,7 @@ TEST(TableEdits, E18_WhatAControllerAloneHasStays) {
   EXPECT_EQ(between(own, program("a : INT; more : INT;"), TableSide::kOwn), "");
   EXPECT_EQ(between(program("mine : INT; b : INT; a : INT;"), program("a : INT; b : INT;"),
                     TableSide::kOwn),
-            "order a: it stood behind `b`\n");
+            "order a: it stood after `b`\n");
   EXPECT_EQ(between(program("a : DINT;"), program("a : INT;"), TableSide::kOwn),
             "type a: type DINT -> INT\n");
   // After the edit it has both, its own where they were.

@@ -133,7 +133,7 @@ void Emitter::activation(uint32_t number) {
   a_.jump_long(shared_.leave);
 }
 
-// The record of the call, the callee's frame and instance, and behind the call everything as
+// The record of the call, the callee's frame and instance, and after the call everything as
 // before. The ID of the callee's instance is in x0, the area of its data in x1.
 void Emitter::call(const Node& n) {
   const Call& c = f_.calls[n.call];

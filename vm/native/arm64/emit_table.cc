@@ -1,4 +1,4 @@
-// A jump through a table of distances, which stands behind the code.
+// A jump through a table of distances, which stands after the code.
 #include "vm/native/arm64/emitter.h"
 
 namespace vm::native::arm64 {

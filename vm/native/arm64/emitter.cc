@@ -330,7 +330,7 @@ void Emitter::leave_at_side(uint32_t side) {
   a_.jump_long(shared_.leave);
 }
 
-// What is seldom comes behind everything else.
+// What is seldom comes after everything else.
 void Emitter::stubs() {
   for (const EdgeStub& edge : edges_) {
     const End& e = f_.blocks[edge.block].end;

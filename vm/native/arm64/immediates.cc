@@ -29,7 +29,7 @@ std::optional<uint32_t> logical_immediate(uint64_t bits, uint8_t width) {
   const uint64_t element = bits & mask;
   const auto ones = static_cast<unsigned>(std::popcount(element));
   const uint64_t run = (uint64_t{1} << ones) - 1;
-  // Where the run begins; a run around the end begins behind the zeros.
+  // Where the run begins; a run around the end begins after the zeros.
   unsigned begin = static_cast<unsigned>(std::countr_zero(element));
   if (begin == 0) {
     const unsigned low = static_cast<unsigned>(std::countr_one(element));

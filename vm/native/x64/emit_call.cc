@@ -54,7 +54,7 @@ Shared emit_shared(Assembler& a) {
   return shared;
 }
 
-// Behind a body the interpreter goes on. By rcx, rsi and the scratch register.
+// After a body the interpreter goes on. By rcx, rsi and the scratch register.
 void Emitter::push_record(uint32_t call) {
   const Call& c = f_.calls[call];
   const ir::Unit* const resume =
@@ -118,7 +118,7 @@ void Emitter::activation(uint32_t number) {
   a_.jump(shared_.leave);
 }
 
-// The record of the call, the callee's frame and instance, and behind the call everything as
+// The record of the call, the callee's frame and instance, and after the call everything as
 // before.
 void Emitter::call(const Node& n) {
   const Call& c = f_.calls[n.call];

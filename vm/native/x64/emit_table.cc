@@ -1,4 +1,4 @@
-// A jump through a table of distances, which stands behind the code.
+// A jump through a table of distances, which stands after the code.
 #include "vm/native/x64/emitter.h"
 
 namespace vm::native::x64 {
@@ -21,7 +21,7 @@ void Emitter::jump_by_table(Block b, const JumpTable& table) {
   }
   a_.alu_imm(Alu::kCmp, Operand::of(value), field(table.ways.size(), width), width);
   a_.jump_if(Condition::kAboveOrEqual, label_of(table.otherwise));
-  // A second scratch register: one that something else may need behind the jump.
+  // A second scratch register: one that something else may need after the jump.
   const uint8_t at = value == kRax ? kRcx : kRax;
   a_.bits_to_float(kFloatScratch, at, 8);
   a_.zero_extend(kScratch, Operand::of(value), width);

@@ -176,7 +176,7 @@ void Emitter::again(Block from, Block head) {
   const bool asks = places.steps.empty() && e.kind == EndKind::kBranch &&
                     e.compare == Op::kCompare && places.edges[0].empty() && places.edges[1].empty();
   if (!asks) return a_.jump(blocks_[head]);
-  // It goes on with the block behind it.
+  // It goes on with the block after it.
   const bool yes_goes_on = e.target[0] == head + 1;
   if (!yes_goes_on && e.target[1] != head + 1) return a_.jump(blocks_[head]);
   const Block out = e.target[yes_goes_on ? 1 : 0];
@@ -345,7 +345,7 @@ void Emitter::give_back(uint32_t fuel) {
   a_.alu_imm(Alu::kAdd, Operand::of(kFuelRegister), static_cast<int32_t>(fuel), 8);
 }
 
-// What is seldom comes behind everything else.
+// What is seldom comes after everything else.
 void Emitter::stubs() {
   for (const EdgeStub& edge : edges_) {
     const End& e = f_.blocks[edge.block].end;

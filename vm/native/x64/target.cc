@@ -26,7 +26,7 @@ bool has_and_not() {
 
 Demands X64Target::demands(const Function& f, const Node& node) const {
   Demands d;
-  if (node.folded != 0xff) d.shares = 0x0f;  // the address is read behind the first operand
+  if (node.folded != 0xff) d.shares = 0x0f;  // the address is read after the first operand
   switch (node.op) {
     case Op::kDivS:
     case Op::kDivU:
