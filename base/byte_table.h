@@ -63,7 +63,7 @@ class ByteTable {
     return static_cast<uint32_t>(hash >> 32);
   }
 
-  // Of the key, or the empty one where it belongs.
+  // The slot of the key, or the empty one where it belongs.
   size_t slot_of(std::string_view key, uint32_t hash) const {
     const size_t mask = slots_.size() - 1;
     for (size_t i = hash & mask;; i = (i + 1) & mask) {

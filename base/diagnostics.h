@@ -58,7 +58,7 @@ class Diagnostics {
   void add(Diagnostic diagnostic);
   void add(DiagnosticCode code, SourceSpan span, std::string text, std::string fix = {});
   bool has_errors() const { return error_count() != 0; }
-  // Those that no policy has made errors: the program has no meaning.
+  // Errors by nature, not by a policy for warnings: the program has no meaning.
   bool has_hard_errors() const { return hard_errors_ != 0; }
   uint32_t error_count() const { return counts_[0]; }
   uint32_t warning_count() const { return counts_[1]; }

@@ -129,7 +129,7 @@ class SarifWriter {
     return out + "\"help\":{\"text\":" + json_string(help) + "}}";
   }
 
-  // Those that occur, in the registry's order; a refusal is the last.
+  // The codes that occur, in the registry's order; a refusal is the last.
   std::string rules() const {
     std::string out;
     for (DiagnosticCode code : codes_) {

@@ -103,7 +103,8 @@ uint64_t fold_piece(uint64_t piece) {
   return piece | capital >> 2;
 }
 
-// Of the bytes as they are, but for capitals below 0x80; `all` gathers the bits of all bytes.
+// A hash of the bytes as they are, but for capitals below 0x80; `all` gathers the bits of all
+// bytes.
 uint64_t hash_pieces(std::string_view name, uint64_t& all) {
   uint64_t hash = 0xcbf29ce484222325u;
   const auto mix = [&](uint64_t piece) {

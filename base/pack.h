@@ -17,8 +17,8 @@ namespace base {
 
 inline constexpr uint32_t kInToken = 15;  // a number follows
 
-// The same bytes always become the same. At most a byte more for each 2^21 that repeat nothing, and
-// a few.
+// Equal bytes always become equal bytes. The result has at most a byte more for each 2^21 that
+// repeat nothing, and a few.
 Bytes pack(ByteSpan bytes);
 // How many bytes unpack() makes; nullopt when it is damaged, or would make more than `limit`.
 std::optional<uint64_t> unpacked_size(ByteSpan packed, uint64_t limit);

@@ -21,7 +21,7 @@ void sha256_blocks_portable(Sha256State& state, const uint8_t* data, size_t bloc
 // False, and nothing done, when this processor has no such instructions.
 bool sha256_blocks_x86(Sha256State& state, const uint8_t* data, size_t blocks);
 
-// Of one after the other.
+// The digest of both, one after the other.
 Digest sha256(ByteSpan first, ByteSpan second);
 
 // States on the way through long bytes, one after each kStep of them: the sum of others that begin

@@ -11,7 +11,7 @@ namespace base {
 // Control characters (C0, DEL, C1) and bytes that are no UTF-8 become \x1b, those that turn the
 // direction of what follows \u202e; all else stays.
 std::string visible(std::string_view text);
-// Of text of several lines, which stay lines.
+// The same for text of several lines, which stay lines.
 std::string visible_lines(std::string_view text);
 
 // The character that `text` begins with, where it is one that nobody sees and that changes the

@@ -38,15 +38,15 @@ class Resident {
   ir::Program* compile(const base::SourceMap& sources, const CompileOptions& options,
                        base::Diagnostics& diagnostics);
 
-  // Of the last program, which was compiled with CompileOptions::tests.
+  // The tests of the last program, which was compiled with CompileOptions::tests.
   const std::vector<TestCase>& test_cases() const;
 
   struct FileLines {
     std::string file;
     std::vector<LineShift> shifts;
   };
-  // Those of the program from `first` to `end` are others now, and end at `new_end`; what was
-  // after them has moved.
+  // The constants of the program from `first` to `end` are others now, and end at `new_end`; what
+  // was after them has moved.
   struct Constants {
     uint32_t first = 0;
     uint32_t end = 0;

@@ -52,7 +52,7 @@ bool Resident::may_move_constants(uint32_t pou) const {
                       [](const PouInfo& info) { return info.meaning != nullptr; });
 }
 
-// Of one body; the records of those after it follow.
+// Replaces the constants of one body; the records of the bodies after it follow.
 void Resident::replace_constants(uint32_t pou, Values values) {
   BodyRecord& record = bodies_[pou];
   const ir::ConstTable& constants = sema_->program.constants;

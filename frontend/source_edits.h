@@ -27,8 +27,8 @@ struct CodePlace {
   uint32_t begin;  // offsets in the text
   uint32_t end;
 };
-// Of all POUs and members in `pous` whose statements are one piece of text, by position. Positions
-// are those of file `file` of `sources`.
+// The places of code of all POUs and members in `pous` whose statements are one piece of text, by
+// position. Positions are those of file `file` of `sources`.
 std::vector<CodePlace> code_places(std::vector<PouDecl>& pous, const base::SourceMap& sources,
                                    uint32_t file);
 

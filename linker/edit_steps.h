@@ -26,7 +26,7 @@ struct EditImages {
 
 // Names of the steps. Units that the edit removes come last: others call them until then.
 base::Result<std::vector<std::string>> edit_steps(const EditImages& edit, StepOrder order);
-// The same in the order of `names`, where the table comes first unless they have ir::kTableName.
+// The steps in the order of `names`, where the table comes first unless they have ir::kTableName.
 // kUsage: a name is no step of the edit, or stands there twice, or one is missing.
 base::Result<std::vector<std::string>> listed_steps(const EditImages& edit,
                                                     const std::vector<std::string>& names);

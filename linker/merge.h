@@ -29,7 +29,7 @@ std::vector<ir::PartEdit> merge_parts(const MergeInput& input);
 struct MergeOptions {
   Slack slack;
   bool matching = false;  // leaves out the units that are missing or others there (E-13)
-  // Of the edit only this one of its steps (ir::of_step), where it comes in several (E-25).
+  // Takes only this step of the edit (ir::of_step), where it comes in several (E-25).
   std::optional<std::string> step = std::nullopt;
 };
 

@@ -70,7 +70,7 @@ class PouMerger {
         pous_[found->second].*which = i;
       }
     };
-    // Those of the target come first, so their order stays.
+    // Versions of the target come first, so their order stays.
     add(input_.target, &Versions::target);
     add(input_.edited, &Versions::edited);
     add(input_.original, &Versions::original);

@@ -146,7 +146,7 @@ class RowMerger {
     const ir::Member* member;
   };
 
-  // Those of the target in their order, then those that the edit adds in theirs.
+  // Globals of the target come in their order, then those that the edit adds in theirs.
   void fill_globals() {
     const std::vector<ir::Member>& edited = edited_.program.types[edited_.program.globals].members;
     std::map<std::string, const ir::Member*> taken;

@@ -1,5 +1,6 @@
-// Whose arguments and results lie in the next frame, at each point of the code of a POU: those of
-// the call that comes next, and of the one that was last (V12 says that they are clear).
+// NextFrame says whose arguments and results lie in the next frame, at each point of the code of a
+// POU: those of the call that comes next, and of the one that was last (V12 says that they are
+// clear).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace linker {
 
-// Of a call that has arguments in the frame.
+// A call that has arguments in the frame.
 struct CallOf {
   bool native = false;
   uint32_t number = 0;  // of the POU, or of the native function
@@ -27,11 +28,12 @@ class NextFrame {
   void enter(uint32_t unit);
   void leave(uint32_t unit);
 
-  // Of what is written to `offset` of the next frame by this unit.
+  // The call of what is written to `offset` of the next frame by this unit.
   std::optional<CallOf> write(uint32_t offset);
-  // Of what is read there: an argument that was put there before, or a result.
+  // The call of what is read there: an argument that was put there before, or a result.
   std::optional<CallOf> read(uint32_t offset) const;
-  // Of a pointer to there that this unit makes in frame slot `slot`: what is done with it says.
+  // The call of a pointer to there that this unit makes in frame slot `slot`: what is done with it
+  // says.
   std::optional<CallOf> point(uint32_t offset, uint16_t slot);
 
  private:

@@ -58,7 +58,7 @@ uint32_t Numbers::wide_offset(Base base, uint32_t number) const {
   return static_cast<uint32_t>(base == Base::kConst ? constants_[number] : offset_of_place(number));
 }
 
-// Of an instance: what its variables take.
+// For an instance: what its variables take.
 uint32_t Numbers::size_of(ir::TypeId type) const {
   const ir::TypeLayout& layout = context_.image.layouts[type];
   return context_.program.types.is_instance(type) ? layout.used : layout.size;

@@ -28,7 +28,7 @@ struct LinkContext {
 base::Digest known_identity(const ir::Object& object, const ir::Program& program,
                             const ir::PouNames& names);
 
-// Of one object: looked up once, however often its code names them.
+// Numbers of one object, each looked up once, however often its code names them.
 class Numbers {
  public:
   Numbers(const LinkContext& context, const ir::Object& object, const FrameLayout& frame);
@@ -38,7 +38,7 @@ class Numbers {
   uint64_t near_offset(ir::Base base, uint32_t number) const;
   uint32_t wide_offset(ir::Base base, uint32_t number) const;
   uint32_t range_number(uint32_t number) const { return ranges_[number]; }
-  // Of a field x or y; `base` is that of the instruction's BASE field.
+  // The value of a field x or y; `base` is that of the instruction's BASE field.
   uint32_t extension_field(const ir::Field& field, uint32_t number, ir::Base base) const;
 
  private:

@@ -45,7 +45,7 @@ class PlaceFinder {
   SpotTest instance_slot() const;
   static bool anything(const Spot& spot) { return spot.offset == 0; }
 
-  // Some type of that size, as a variable of it takes; nullopt: none.
+  // Some type whose variables have that size; nullopt: none.
   std::optional<ir::TypeId> type_of_size(uint32_t size) const;
 
  private:

@@ -27,7 +27,7 @@ class ConstantPool {
   uint32_t offset(const ir::Object& object, uint32_t number) const {
     return offsets(object)[number];
   }
-  // Of all its constants.
+  // The offsets of all constants of the object.
   const std::vector<uint32_t>& offsets(const ir::Object& object) const {
     return of_object_.at(&object);
   }

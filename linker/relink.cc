@@ -103,7 +103,7 @@ class Relinker {
            std::equal(a.bounds.begin(), a.bounds.end(), b.bounds.begin(), b.bounds.end(), same);
   }
 
-  // The same bytes, one after the other, as the pool has for what the object was?
+  // Has the object the same constants, one after the other, as the pool has for what it was before?
   bool has_constants(const ir::Object& before, const ir::Object& object) const {
     const InitialValues initial(program_.types, program_.constants, state_.image.layouts);
     if (before.constants.size() != object.constants.size()) return false;

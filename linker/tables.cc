@@ -5,7 +5,7 @@
 namespace linker {
 namespace {
 
-// Of an entry that nothing uses. No variable has this name.
+// The name of an entry that nothing uses. No variable has this name.
 constexpr const char* kUnused = "(unused)";
 
 std::string text_of(const base::ByteWriter& key) {

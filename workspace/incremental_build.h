@@ -48,17 +48,15 @@ class IncrementalBuild {
   // kUsage, and no message, for several RESOURCEs.
   base::Result<const ir::Image*> build(const base::SourceMap& sources,
                                        base::Diagnostics& diagnostics);
-  // The same, where only these files may differ from the sources of the last call.
+  // Builds where only these files may differ from the sources of the last call.
   base::Result<const ir::Image*> build(const base::SourceMap& sources,
                                        const std::vector<uint32_t>& saved,
                                        base::Diagnostics& diagnostics);
   // What the last build() gave runs now: builds from nothing are linked against `base`, which is
   // equal to it, from now on. Edits are followed as before, since they move nothing.
   void continue_from(std::shared_ptr<const ir::Image> base) { next_base_ = std::move(base); }
-  // Of the last good build, with CompileOptions::tests.
-  const std::vector<frontend::TestCase>& test_cases() const {
-    return kept_->frontend.test_cases();
-  }
+  // The tests of the last good build, with CompileOptions::tests.
+  const std::vector<frontend::TestCase>& test_cases() const { return kept_->frontend.test_cases(); }
   const Counts& counts() const { return counts_; }
 
  private:

@@ -5,8 +5,8 @@
 
 namespace modbus {
 
-// Of a checked device with one of the four drivers. kDeviceFailed when a setting cannot be used;
-// that nobody answers is found by exchanging.
+// Makes the driver of a checked device with one of the four drivers. kDeviceFailed when a setting
+// cannot be used; that nobody answers is found by exchanging.
 base::Result<std::unique_ptr<vm::IoDriver>> make_driver(const ir::Device& device);
 
 }  // namespace modbus

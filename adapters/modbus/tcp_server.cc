@@ -156,7 +156,7 @@ class TcpServer : public Serving {
     return got < length ? 0 : length;
   }
 
-  // The same header as the request, but for the length.
+  // The answer has the header of the request, but for the length.
   static bool send_answer(const Client& client, base::ByteSpan header, base::ByteSpan pdu) {
     base::Bytes out(header.begin(), header.end());
     out[kHeader - 1] = static_cast<uint8_t>(1 + pdu.size());  // the unit, too

@@ -203,7 +203,7 @@ void import_types(Node owner, Reporter& report) {
   }
 }
 
-// Of IEC 61131-10: everything that is made inside of it stands in it.
+// A namespace of IEC 61131-10 contains everything that is made inside of it.
 void import_namespaces(Node owner, Reporter& report) {
   for (Node space : xml::children(owner, "namespace")) {
     const std::string name(report.required_name(space));

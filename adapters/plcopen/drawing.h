@@ -131,7 +131,7 @@ uint64_t id_of(std::string_view text);
 std::string diagram_text(Node body, const std::string& name, Reporter& report);
 // What arrives at `name`, in a body that ends in that coil or variable, as an expression.
 std::string diagram_condition(Node body, const std::string& name, Reporter& report);
-// The same of links in a chart. Empty, after a report: it is none.
+// The condition that links of a chart lead to; empty after a report when they are none.
 std::string links_text(const network::Network& all, const std::vector<network::Link>& links,
                        Node at, Reporter& report);
 // An element in a chart that no condition is made of: what to do with it.

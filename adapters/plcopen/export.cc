@@ -23,7 +23,7 @@ std::optional<Edition> form_of_name(std::string_view name) {
   return std::nullopt;
 }
 
-// Those of one file and name are one list.
+// Global blocks of one file and name are one list.
 std::vector<Writer::Globals> Writer::global_lists() {
   std::vector<Globals> out;
   for (const VarBlock& block : tree_.globals) {
@@ -157,7 +157,7 @@ namespace {
 
 const char* name_space(Edition form) {
   return form == Edition::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
-                                : "http://www.plcopen.org/xml/tc6_0201";
+                                   : "http://www.plcopen.org/xml/tc6_0201";
 }
 
 void put_headers(Node project, const std::string& name) {

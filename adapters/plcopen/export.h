@@ -23,8 +23,8 @@ struct ExportInput {
   const frontend::Tree& tree;
   std::string name;  // of the project
   Edition form = Edition::kTc6v201;
-  // Of what was imported and is written again: drawings with their places and ids, by POU or
-  // POU.Action, and addData that nobody understood, by POU.
+  // What is kept of documents that were imported and are written again: drawings with their places
+  // and ids, by POU or POU.Action, and addData that nobody understood, by POU.
   const xml::Kept* kept = nullptr;
   bool with_sources = true;  // their text, for import() alone
 };

@@ -10,7 +10,7 @@ void Iec10Writer::documentation(Node to, Node from) {
 
 namespace {
 
-// Of CODESYS: it has elements of its own there, or none.
+// Is it data of CODESYS? That has elements of its own there, or none.
 bool is_codesys(Node data) {
   return xml::attribute(data, "name").starts_with("http://www.3s-software.com/plcopenxml/");
 }
@@ -294,7 +294,7 @@ void Iec10Writer::project(Node from, Node to) {
   }
   other_data(content, from);
   if (lists.empty()) return;
-  // They stand in a configuration that runs nothing.
+  // The globals stand in a configuration that runs nothing.
   Node configuration = instances.append_child("Configuration");
   set(configuration, "name", "Config");
   Node made = configuration.append_child("Resource");

@@ -63,7 +63,7 @@ void import_interface(Node interface, Reporter& report);
 // --- body.cc
 // The bodies of `owner` (<pou>, <action> ...) as text. `name` says whose in messages.
 std::string body_text(Node owner, const std::string& name, Reporter& report);
-// The same of the element that holds <ST>, <IL>, <LD>, <FBD> or <SFC>.
+// The same for the element that holds <ST>, <IL>, <LD>, <FBD> or <SFC>.
 std::string language_text(Node body, Node owner, const std::string& name, Reporter& report);
 // Statements in the place of a body that could not be imported: nothing takes it for empty.
 std::string error_text(const std::string& text);

@@ -34,7 +34,7 @@ class SourceParts {
   void put(xml::Node project) const;  // all of them, into its addData
   // Elements do not say all of what stands at `at`.
   void mark_partial(base::SourcePos at);
-  // Of the document that is complete: digests, and how many elements each part has.
+  // Writes into the complete document: digests, and how many elements each part has.
   void seal(xml::Node root) const;
 
  private:

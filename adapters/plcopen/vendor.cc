@@ -10,7 +10,7 @@
 namespace plcopen {
 namespace {
 
-// Of the editor or the project's tree; the program is the same without.
+// Data of the editor or the project's tree; without them the program is the same.
 constexpr const char* kEditor[] = {
     "objectid",       "projectstructure", "projectinformation", "buildproperties",  "tasksettings",
     "fbdelementtype", "fbdcalltype",      "inputparamtypes",    "outputparamtypes", "pou",

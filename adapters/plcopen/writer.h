@@ -45,7 +45,7 @@ class Writer {
   std::string comment_before(base::SourcePos begin) const;
   std::string comment_behind(base::SourcePos end) const;
   std::string address_of(const frontend::VarDecl& decl) const;
-  // Of a POU, method, action or accessor: its own text without head, variables, members and END.
+  // The own text of a POU, method, action or accessor, without head, variables, members and END.
   // `head_end` is where name, result and bases end.
   struct Pieces {
     std::string head;  // with the variables

@@ -41,7 +41,7 @@ class Document {
   Document(std::string name, std::string_view bytes, base::SourceMap& sources, Imported& out);
 
   Node root() const { return root_; }
-  // Of the element's name, or of the text of another node.
+  // Where the element's name stands, or the text of another node.
   base::SourceSpan span(Node node) const;
 
  private:
@@ -68,7 +68,7 @@ class Reporter {
   void set_network(uint32_t network) { network_ = network; }
   // An attribute that has to be there; empty, after a report, when it is not.
   std::string_view required(Node node, const char* attribute);
-  // The same for a name of Structured Text.
+  // The same for an attribute that is a name of Structured Text.
   std::string_view required_name(Node node, const char* attribute = "name");
 
   // Takes declarations in the place of sources of their own; null: none does.
@@ -116,7 +116,7 @@ std::string as_name(std::string_view text);
 std::string comment(std::string_view text, std::string_view indent);
 // The lines of `text`, each after `indent` unless empty, each ended.
 std::string indented(std::string_view text, std::string_view indent);
-// Of the first element that has it, in a message: <variable name="x">
+// How a message shows the element: <variable name="x">
 std::string shown(Node node);
 
 }  // namespace xml

@@ -35,7 +35,7 @@ struct MadeSource {
 // A body as it was drawn.
 struct KeptDrawing {
   frontend::network::Body body;
-  // Of a ladder that became FBD: what the text says, as network::canonical() has it.
+  // What the text of a ladder that became FBD says, as network::canonical() has it.
   std::string text;
   std::string xml;  // <LD> or <FBD>, without prefixes; of IEC 61131-10 empty
 };

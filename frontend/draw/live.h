@@ -22,7 +22,7 @@ class Live {
   void set(std::string_view path, std::string value);
   // Value of a variable as text; null when it was not read.
   const std::string* find(std::string_view variable) const;
-  // Of a BOOL expression of variables, literals, NOT, AND, OR, XOR and comparisons.
+  // The truth of a BOOL expression of variables, literals, NOT, AND, OR, XOR and comparisons.
   Truth truth(std::string_view expression) const;
   // What to write beside an operand: its value, or `name=value` of the variables in an
   // expression; empty for BOOL, which colour shows.

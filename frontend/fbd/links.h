@@ -57,7 +57,7 @@ class Links {
   std::vector<std::string> names_;              // of boxes_, as they were added
   size_t longest_ = 0;                          // of these names
   std::vector<Use> uses_;
-  // Of boxes whose outputs are used, by element: numbers by folded name.
+  // For boxes whose outputs are used, by element: the outputs' numbers by folded name.
   std::unordered_map<uint32_t, std::unordered_map<std::string, uint32_t>> outputs_;
 };
 

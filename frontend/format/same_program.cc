@@ -40,7 +40,7 @@ bool same_token(const Text& a, const Text& b, uint32_t i) {
   return (is_keyword(a.kind(i)) || is_name(a.kind(i))) && ir::same_name(a.token(i), b.token(i));
 }
 
-// Of two gaps in front of the same token.
+// Do two gaps in front of the same token have the same drawing?
 bool same_drawing(const Text& a, const Text& b, uint32_t i) {
   if (i == 0 || !ends_diagram(a.kind(i - 1), a.kind(i))) return false;
   auto between = [i](const Text& text) {

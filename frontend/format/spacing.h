@@ -38,7 +38,7 @@ enum class GroupKind : uint8_t {
   kParen,  // part of an expression
   kIndex,  // indices and bounds
 };
-// Of the bracket at `open`, whose partner is at `close`.
+// The kind of the bracket at `open`, whose partner is at `close`.
 GroupKind group_kind(const Text& text, uint32_t open, uint32_t close, uint32_t first);
 
 }  // namespace frontend::formatting

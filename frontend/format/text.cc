@@ -51,7 +51,7 @@ void Text::scan_gap(uint32_t from, uint32_t to) {
     Piece piece{at, 0, newlines, PieceKind::kForeign};
     piece.end = end_of_piece(at, to, piece.kind);
     at = piece.end;
-    // Its own indentation belongs to what is copied as it stands.
+    // The indentation of the piece belongs to what is copied as it stands.
     if (piece.kind == PieceKind::kForeign) piece.begin = with_indentation(piece.begin);
     newlines = 0;
     pieces_.push_back(piece);

@@ -196,7 +196,7 @@ class Heads {
   Heads(std::string_view text, base::SourcePos begin, const std::vector<Row>& rows)
       : text_(text), begin_(begin), rows_(rows) {}
 
-  // Of the rows from the last one taken up to `end`.
+  // Reads the rows from the last one taken up to `end`.
   network::Network take(uint32_t end, network::Body& body) {
     network::Network out;
     for (; next_ < end; ++next_) {

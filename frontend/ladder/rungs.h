@@ -38,7 +38,7 @@ struct Rung {
   std::vector<Node> nodes;
 };
 
-// Of all drawn rows. Wires that lead nowhere are reported (E1040, E1042).
+// The rungs of all drawn rows. Wires that lead nowhere are reported (E1040, E1042).
 std::vector<Rung> find_rungs(const std::vector<Row>& rows, base::SourcePos begin,
                              base::Diagnostics& diagnostics);
 

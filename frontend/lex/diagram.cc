@@ -41,8 +41,8 @@ size_t next_end(std::string_view text, size_t at) {
 
 }  // namespace
 
-// These words are names elsewhere. Where the end is missing, a rung tells that a drawing began; so
-// it does in the line of the word.
+// LADDER and FBD are names elsewhere. Where the end is missing, a rung tells that a drawing began;
+// so it does in the line of the word.
 void Scanner::skip_diagram(size_t word, TokenKind kind) {
   bool rung_behind =
       kind == TokenKind::kLadder && text_.substr(behind_blanks(text_, at_), 3) == "|--";

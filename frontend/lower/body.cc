@@ -72,7 +72,7 @@ void Body::leave() {
   go({}, 0);
 }
 
-// Of the POU's own text? The statements may be of a later one.
+// Is it outside of the POU's own text? The statements may be of a later one.
 bool Body::is_outside(base::SourcePos pos) const {
   const PouDecl& decl = *info_.decl;
   const auto in = [pos](base::SourceSpan span) { return !(pos < span.begin) && pos <= span.end; };

@@ -70,7 +70,7 @@ class Builder {
   void trap_again(ir::ValueId kind);
   void begin_try(ir::BlockId body, ir::BlockId handler);
   void end_try(ir::BlockId behind);
-  // Of the blocks that are started from here on; invalid: none. Returns the one before.
+  // The handler of the blocks that are started from here on; invalid: none. Returns the one before.
   ir::BlockId set_handler(ir::BlockId handler);
 
   // A variable of the frame that no source name means.

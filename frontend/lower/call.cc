@@ -272,7 +272,7 @@ Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wa
   return result;
 }
 
-// Of a function that only computes.
+// Warns when the result of a function that only computes is not used.
 void Body::check_result_use(const Expr& call) {
   for (uint32_t i = 0; i < call.list.count; ++i) {
     if (tree_.args[call.list.first + i].output) return;  // ENO

@@ -8,7 +8,7 @@
 
 namespace frontend {
 
-// Of steps and actions.
+// Flags of steps and actions.
 inline constexpr ir::Scalar kFlag = ir::Scalar::kBool;
 inline constexpr ir::Scalar kElapsed = ir::Scalar::kI64;
 

@@ -137,7 +137,7 @@ void ChartBody::active_steps() {
   }
 }
 
-// Of the transitions that leave a step, the first whose condition holds fires.
+// Among the transitions that leave a step, the first whose condition holds fires.
 void ChartBody::active_step(uint32_t step) {
   pass_time(steps_[step], "T");
   if (!alone_[step]) return;

@@ -5,7 +5,7 @@
 
 namespace frontend {
 
-// Whose method `x.m` or `m` is; evaluates x.
+// The instance whose method `x.m` or `m` is; evaluates x.
 Receiver Body::receiver_of(const Expr& head) {
   Receiver receiver;
   if (head.kind != ExprKind::kMember) return receiver;

@@ -27,7 +27,7 @@ ir::Place Body::global_place(uint32_t member) {
   return place;
 }
 
-// Of shared bytes.
+// The place of a variable in shared bytes.
 ir::Place Body::view_place(const AddressView& view) {
   ir::Place place = global_place(view.global);
   const ir::TypeId shared = place.type;

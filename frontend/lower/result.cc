@@ -34,7 +34,7 @@ ir::ValueId Body::emit_result(ExprId id) {
   return build_.load(from, scalar(from.type));
 }
 
-// The same local wherever the result is used.
+// The result is in the same local wherever it is used.
 ir::Place Body::result_place(const Expr& expr, ir::TypeId type) {
   auto found = result_places_.find(expr.number);
   if (found != result_places_.end()) return found->second;

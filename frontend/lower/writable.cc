@@ -7,7 +7,7 @@
 namespace frontend {
 namespace {
 
-// It stands at %I.
+// Is the variable at %I?
 bool is_input(const Variable& variable) {
   return variable.decl != nullptr && variable.decl->has_address &&
          variable.decl->address.area == ir::DirectArea::kInput;

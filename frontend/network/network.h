@@ -58,7 +58,8 @@ struct Input {
   base::SourceSpan span;
 };
 
-// Of a function: the first output that is not ENO is its result, whatever its name.
+// The outputs of a box. In a function the first output that is not ENO is its result, whatever its
+// name.
 struct Output {
   std::string name;  // formal parameter; empty: the result, or the only output
   bool negated = false;

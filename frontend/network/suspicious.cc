@@ -43,7 +43,7 @@ const PoweredBox* powered_box(std::string_view type) {
   return nullptr;
 }
 
-// The same place whatever else is going on: no index that varies. "" otherwise.
+// The operand when it is the same place whatever else is going on (no index varies); otherwise "".
 std::string fixed_place(std::string_view operand) {
   std::string out;
   bool index = false;

@@ -20,8 +20,8 @@ constexpr QualifierWord kQualifiers[] = {
 
 }  // namespace
 
-// These words are names elsewhere. Two names side by side are never part of a statement, except
-// in `step S= x`; a call `transition(x := 1)` is not followed by FROM.
+// STEP, TRANSITION and ACTION are names elsewhere. Two names side by side are never part of a
+// statement, except in `step S= x`; a call `transition(x := 1)` is not followed by FROM.
 bool Parser::at_chart_element() const {
   bool step = kind() == TokenKind::kStep || kind() == TokenKind::kInitialStep;
   if (!step && kind() != TokenKind::kTransition) return false;

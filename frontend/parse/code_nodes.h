@@ -144,7 +144,7 @@ struct Expr {
   bool global : 1 = false;              // kName
   bool parenthesised : 1 = false;
   bool instruction : 1 = false;  // kCall, kBinary, kName of a function: of an instruction list
-  // Of the tree below, at most kMaxExpressionHeight: recursion over it is safe.
+  // The height of the tree below, at most kMaxExpressionHeight: recursion over it is safe.
   uint16_t height = 1;
   base::SourceSpan span;
   base::SourcePos op;  // of the operator, the dot, the bracket
@@ -202,7 +202,8 @@ struct Stmt {
   bool has_else : 1 = false;
   bool has_catch : 1 = false;
   bool has_finally : 1 = false;
-  // Of an instruction list. S and R of an instance are calls: kAssign then has the call in `from`.
+  // Is it part of an instruction list? S and R of an instance are calls: kAssign then has the call
+  // in `from`.
   bool instruction : 1 = false;
   base::SourceSpan span;  // kFor..kIf: of the head line
   ExprId target;

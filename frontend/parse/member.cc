@@ -9,7 +9,8 @@ bool Parser::takes_members(PouKind kind) {
          kind == PouKind::kInterface;
 }
 
-// These words are names elsewhere; two names side by side are never part of a statement.
+// METHOD, PROPERTY and ACTION are names elsewhere; two names side by side are never part of a
+// statement.
 bool Parser::at_member() const {
   bool word = kind() == TokenKind::kMethod || kind() == TokenKind::kProperty ||
               kind() == TokenKind::kAction;

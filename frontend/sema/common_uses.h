@@ -38,8 +38,8 @@ class CommonUses {
 
   // Each byte of %Q has one writer among the tasks (E5003).
   void check_output_tasks();
-  // Of the resource that is compiled; nothing where there is but one. Marks the globals that are
-  // exchanged (ir::Program::shared), and leaves overrides out that only others can reach.
+  // The uses of the resource that is compiled; nothing where there is only one. Marks the globals
+  // that are exchanged (ir::Program::shared), and leaves overrides out that only others can reach.
   ResourceUses of_resource();
   // Is the variable declared outside every RESOURCE of several, and not a constant?
   bool is_outer(VarId global) const;

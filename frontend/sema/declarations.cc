@@ -192,8 +192,7 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
   info.name = name;
   info.library = library;
   info.open = is_open(decl);
-  info.as_block =
-      for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
+  info.as_block = for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
   if (const std::string rule = renamed_from(tree, decl.attributes); !rule.empty()) {
     info.old_name = keep_name(whole_old_names(name, rule));
   }
@@ -240,7 +239,7 @@ void Sema::collect_interface(uint32_t number) {
   number_variables(info);
 }
 
-// Of a program instance with code of its own: what shares its place is that of all instances.
+// For a program instance with code of its own: the variable of all instances that shares its place.
 VarId Sema::shared_by_original(const PouInfo& info, const Variable& variable) const {
   if (info.meaning == nullptr || !variable.decl->has_address) return {};
   for (const PouInfo& original : pous) {
@@ -348,7 +347,7 @@ bool Sema::use_library(std::string_view name) {
   return true;
 }
 
-// Of functions and methods; prototypes have nobody who could assign.
+// Covers functions and methods; a prototype has no body that could assign.
 static void report_unassigned_results(Sema& sema) {
   for (const PouInfo& pou : sema.pous) {
     if (pou.library || pou.open || pou.made != MadeCode::kNone || !pou.result.valid()) continue;

@@ -3,7 +3,7 @@
 
 namespace frontend {
 
-// Of a callee without parameters of these names; null: a standard function.
+// Is it EN or ENO of a callee without parameters of these names; null: a standard function.
 bool Sema::is_enable(const Arg& arg, const PouInfo* callee) const {
   bool named = ir::same_name(arg.name.text, "EN") || ir::same_name(arg.name.text, "ENO");
   return named && (callee == nullptr || !objects.find_parameter(*callee, arg.name.text).valid());

@@ -70,7 +70,7 @@ std::string Sema::static_list_name(const PouInfo& info) const {
   return name;
 }
 
-// Of a method, but kept in the instance: a member that is named `Method#variable`.
+// A variable of a method that is kept in the instance: a member that is named `Method#variable`.
 void Sema::add_instance_variable(Variable variable, PouInfo& method) {
   if (method.owner == kNoPou || pous[method.owner].decl->kind == PouKind::kInterface) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,

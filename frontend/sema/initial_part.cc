@@ -13,7 +13,7 @@ ir::ConstId Sema::listed(ir::ConstId list, uint64_t index) const {
   return found;
 }
 
-// Of an instance whose block is not resolved yet, too.
+// Works for an instance whose block is not resolved yet, too.
 ir::ConstId Sema::member_default(ir::TypeId type, uint32_t member) {
   if (const PouInfo* block = pou_of(type)) {
     const VarId id = objects.member_variable(*block, member);

@@ -63,7 +63,7 @@ bool InstancePaths::global(VarId id, Path& path) {
   return path.type.valid();
 }
 
-// Of shared bytes: the path has the name of the view alone.
+// For shared bytes the path has the name of the view alone.
 void InstancePaths::view(const AddressView& view, Path& path) {
   const ir::Member& shared = sema_.program.types[sema_.program.globals].members[view.global];
   const ir::Member& member = sema_.program.types[shared.type].members[view.member];

@@ -115,7 +115,7 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   return {};
 }
 
-// Its result, or what it is given: has the property's name.
+// The accessor's result, or what it is given; it has the property's name.
 VarId Objects::value_of(const PouInfo& accessor) const {
   return accessor.names.find(accessor.decl->name.text)->second;
 }

@@ -36,11 +36,11 @@ class Namespaces {
   // Reports ambiguous and INTERNAL names, once each.
   std::string_view find(NameSort sort, const Name& name);
   std::string_view find(NameSort sort, Range32 qualifiers, const Name& name);
-  // Of `x` or `A.B.x` in code; "": it is neither, or `A.B` is no namespace.
+  // The full name that `x` or `A.B.x` means in code; "": it is neither, or `A.B` is no namespace.
   std::string_view find(NameSort sort, const Expr& expr);
   // The global variable of that name; invalid: there is none.
   VarId find_global(const Name& name);
-  // The same of `A.x` or `List.x` in code.
+  // The same for `A.x` or `List.x` in code.
   VarId find_global(const Expr& member);
   // The list of globals that `L` or `A.L` in code means; null: it means none.
   const GlobalList* list(const Expr& head);

@@ -35,7 +35,7 @@ class Objects {
   uint32_t block_of(uint32_t pou) const;
   // A variable of the block or of its bases that code outside of its body can see.
   VarId find_variable(uint32_t block, std::string_view name) const;
-  // Of what is called: a POU with a frame has its own parameters only.
+  // Looks in what is called: a POU with a frame has its own parameters only.
   VarId find_parameter(const PouInfo& callee, std::string_view name) const;
   // In order of declaration, those of bases first.
   std::vector<VarId> variables_of(const PouInfo& pou) const;
@@ -90,7 +90,7 @@ class Objects {
   // What the program __START begins with: globals, then programs.
   const std::vector<VarId>& start_globals() const { return start_globals_; }
   VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
-  // Its number in Sema::pous.
+  // Returns the method's number in Sema::pous.
   uint32_t add_made_method(uint32_t block, std::string_view name, MadeCode code);
   // A global, not 0 where a change is what start code runs for.
   VarId change_flag() const { return change_flag_; }

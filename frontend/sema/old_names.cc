@@ -122,7 +122,8 @@ void OldNames::rename_types() {
   }
 }
 
-// Of the list in front of the names of VAR_STAT variables; "" when it has not changed.
+// The old names of the list in front of the names of VAR_STAT variables; "" when it has not
+// changed.
 std::string OldNames::old_list(const PouInfo& info) const {
   if (info.owner == kNoPou) return std::string(info.old_name);
   const PouInfo& block = sema_.pous[info.owner];

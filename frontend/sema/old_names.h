@@ -18,7 +18,7 @@ class OldNames {
   ir::OldNameId of_rule(Range32 attributes);
   // By the variable's own rule or that of the POU that it is part of.
   ir::OldNameId of(const Variable& variable);
-  // Of the type `name(instance)`, by the rules of the program and of its instance.
+  // The old names of the type `name(instance)`, by the rules of the program and of its instance.
   ir::OldNameId of_clone(std::string_view name, std::string_view rule, std::string_view instance,
                          std::string_view instance_rule);
   // After the resolution of all types. Only those with a name of their own can be renamed.

@@ -8,7 +8,8 @@ namespace frontend {
 
 namespace {
 
-// Of one operand; who has more is warned of all, so that long chains cost no square.
+// How many traps of one operand are kept; an operand with more is warned of as a whole, so that
+// long chains cost no square.
 constexpr size_t kMostTraps = 64;
 
 // As written, but for blanks and case; "" for what stands in no source.

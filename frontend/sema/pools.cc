@@ -196,7 +196,7 @@ Note Pools::infer_new(ExprId type) {
   return note;
 }
 
-// It is called for what it does; the value is FALSE.
+// __DELETE is called for what it does; its value is FALSE.
 Note Pools::infer_delete(ExprId pointer) {
   const Note& given = sema_.infer(pointer);
   const ir::TypeTable& types = sema_.program.types;

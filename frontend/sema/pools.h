@@ -38,7 +38,8 @@ class Pools {
   // __NEW(type), __DELETE(pointer)
   Note infer_new(ExprId type);
   Note infer_delete(ExprId pointer);
-  // Of the type that `type` names, as __NEW has it: T, or T(arguments). Reports when there is none.
+  // The pool of the type that `type` names, as __NEW has it: T, or T(arguments). Reports when there
+  // is none.
   const Pool* of_new(ExprId type);
   // Where an object behind a pointer to `target` may come from.
   std::vector<const Pool*> of_target(ir::TypeId target) const;

@@ -1,12 +1,10 @@
-// Whose member is meant: THIS, SUPER, instances, references, interface variables.
+// Finds out whose member is meant: THIS, SUPER, instances, references, interface variables.
 #include "frontend/sema/objects.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 bool Objects::is_own(const Expr& expr) const {
   const Expr& head = expr.kind == ExprKind::kDeref ? sema_.tree[expr.operand] : expr;
@@ -79,7 +77,7 @@ bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
   return false;
 }
 
-// Of a method without a specifier: PUBLIC, but PROTECTED in the standard (edition 3, 6.6.5).
+// A method without a specifier is PUBLIC, but PROTECTED in the standard (edition 3, 6.6.5).
 bool Objects::check_access(const PouInfo& method, const Name& name) {
   Access access = method.decl->access;
   const PouInfo& owner = sema_.pous[method.owner];

@@ -37,8 +37,8 @@ void Sema::mark_written(VarId id) {
   if (log != nullptr) log->marks.push_back(2 * id.index + 1);
 }
 
-// Of a name that could have been meant where nothing has the one that is written: perhaps the
-// mistake is there.
+// The place of a name that could have been meant where nothing has the one that is written: perhaps
+// the mistake is there.
 base::SourceSpan Sema::declared_at(DiagnosticCode code, std::string_view name) const {
   const auto variable = [&](const NameMap<VarId>& names) -> const Name* {
     const auto found = names.find(name);

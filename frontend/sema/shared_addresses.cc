@@ -258,7 +258,7 @@ void SharedAddresses::make_one(const Group& group) {
   }
 }
 
-// Of a bit: its byte, with the other bits in it.
+// For a bit: the initial value of its byte, with the other bits in it.
 ir::ConstId SharedAddresses::initial_of(const Group& group, const Place& place) const {
   if (!place.variable.valid()) return {};
   const ir::ConstId own = sema_.variables_[place.variable.index].init;
@@ -322,7 +322,7 @@ void SharedAddresses::make_structure(const Group& group) {
   }
 }
 
-// Its number among the variables: number_again() knows that among the globals.
+// Returns its number among the variables; number_again() knows that among the globals.
 uint32_t SharedAddresses::add_global(const Group& group, ir::Type type, uint32_t begin) {
   uint64_t end = 0;
   Variable shared;

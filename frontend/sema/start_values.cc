@@ -20,7 +20,7 @@ ir::ConstId StartValues::add(ExprId id) {
   }
 }
 
-// Of the POU that is looked at; "" outside of all.
+// The name of the POU that is looked at; "" outside of all.
 std::string StartValues::scope_name() const {
   if (sema_.current_pou_ == kNoPou) return {};
   const PouInfo& pou = sema_.pous[sema_.current_pou_];

@@ -39,8 +39,8 @@ void apply_choice(Sema& sema, const TaskDecl& decl, const Attribute& attribute, 
              known.empty() ? "it takes no value" : "write one of " + known);
 }
 
-// Of a freewheeling task, and not refused by ir::policy_conflict, because images may have it: it
-// does nothing.
+// Has a freewheeling task an `overrun`? It is not refused by ir::policy_conflict, because images
+// may have it: it does nothing.
 bool has_idle_overrun(const ir::TaskPolicy& policy) {
   return policy.overrun == ir::Overrun::kStretch || policy.overrun == ir::Overrun::kFault;
 }
@@ -57,10 +57,10 @@ void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task) {
     }
   }
   if (task.policy.freewheeling && has_idle_overrun(task.policy)) {
-    sema.error(Code::kBadTaskPolicy, decl.span,
-               "task " + quoted(decl.name.text) +
-                   " is freewheeling: no release finds its scan running",
-               "leave the attribute `overrun` out");
+    sema.error(
+        Code::kBadTaskPolicy, decl.span,
+        "task " + quoted(decl.name.text) + " is freewheeling: no release finds its scan running",
+        "leave the attribute `overrun` out");
   }
   const bool periodic = !decl.single.valid() && !task.policy.freewheeling;
   if (const ir::PolicyConflict* conflict = ir::policy_conflict(task.policy, periodic)) {

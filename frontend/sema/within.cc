@@ -1,4 +1,4 @@
-// Whose names are visible.
+// Finds out whose names are visible.
 #include "frontend/sema/sema.h"
 
 namespace frontend {

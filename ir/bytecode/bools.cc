@@ -10,7 +10,7 @@
 namespace ir {
 namespace {
 
-// Of instructions, by opcode.
+// Counts of units of instructions, by opcode.
 const std::array<uint8_t, kOpcodeCount>& unit_counts() {
   static const std::array<uint8_t, kOpcodeCount> kUnits = [] {
     std::array<uint8_t, kOpcodeCount> units{};

@@ -11,8 +11,8 @@ namespace ir {
 
 class Bools {
  public:
-  // Of a verified image, which is borrowed. `known`: of another version, whose code is looked at
-  // no more where it is the same; null: of none.
+  // The bools of a verified image, which is borrowed. `known`: those of another version, whose code
+  // is looked at no more where it is the same; null: of none.
   explicit Bools(const Image& image, const Bools* known = nullptr);
 
   // Do instructions of this image write nothing but 0 and 1 to bytes of BOOLs?

@@ -129,7 +129,7 @@ struct Unit {
     b = static_cast<uint16_t>(v);
     c = static_cast<uint16_t>(v >> 16);
   }
-  // Of an extension unit:
+  // The fields of an extension unit:
   constexpr uint32_t x() const { return op | static_cast<uint32_t>(a) << 16; }
   constexpr uint32_t y() const { return b | static_cast<uint32_t>(c) << 16; }
   friend bool operator==(const Unit&, const Unit&) = default;

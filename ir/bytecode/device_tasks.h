@@ -10,7 +10,8 @@
 
 namespace ir {
 
-// Its index in the image's tasks. Nothing: there is no such task, or none whose scans could trap.
+// The index of the task in the image. Nothing: there is no such task, or none whose scans could
+// trap.
 std::optional<uint32_t> loss_task(const Image& image, std::string_view name);
 // "there is no task ..." of a name that is none; "" else.
 std::string bad_loss_task(const Image& image, std::string_view name);

@@ -139,7 +139,7 @@ std::optional<DeviceFault> find_fault(const std::vector<Device>& devices,
 // the usual one of soft PLCs (a Modbus server), which others can write when `writable` says so:
 // docs/IO.md.
 bool has_default_map(const Device& device);
-// That map, for a process image of that size.
+// Adds the default map for a process image of that size.
 void add_default_map(Device& device, const ProcessImageSize& size);
 // Bytes of %I, %Q and %M that the devices need.
 ProcessImageSize process_image_size(const std::vector<Device>& devices);

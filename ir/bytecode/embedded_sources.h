@@ -38,7 +38,7 @@ base::Status check_sources(const EmbeddedSources& sources);
 base::Bytes encode_sources(const EmbeddedSources& sources);
 // What is in it, checked.
 base::Result<EmbeddedSources> decode_sources(base::ByteSpan section);
-// Of an image that is sound; none where it has none.
+// The sources of an image that is sound; none where it has none.
 base::Result<EmbeddedSources> sources_of(base::ByteSpan encoded);
 
 struct SourceText {

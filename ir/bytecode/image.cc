@@ -61,7 +61,7 @@ uint32_t sections_of(uint32_t version) {
   return has_sources ? kImageSectionCount + 1 : kImageSectionCount;
 }
 
-// Of a header that is there.
+// The version in a header that is there.
 uint32_t stored_version(base::ByteSpan bytes) {
   return base::ByteReader(bytes.subspan(kImageMagic.size())).u32();
 }
@@ -92,7 +92,7 @@ base::Status check_header(base::ByteSpan bytes) {
   return base::Ok{};
 }
 
-// Of how many bytes at the beginning both are known to be the same; not of all that are.
+// How many bytes at the beginning are known to be equal in both; more may be.
 size_t same_bytes(base::ByteSpan a, base::ByteSpan b) {
   constexpr size_t kStep = base::Sha256Trail::kStep;
   const size_t most = std::min(a.size(), b.size());
@@ -146,7 +146,7 @@ base::Status split(base::ByteSpan bytes, Contents& contents, uint32_t& count) {
   return base::Ok{};
 }
 
-// Of an image that was made here or decoded.
+// The contents of an image that was made here or decoded.
 Contents contents_of(const KnownImage* known) {
   Contents contents;
   uint32_t count = 0;
@@ -220,9 +220,9 @@ base::Result<Image> decode(base::ByteSpan bytes) {
   return std::move(decoded->image);
 }
 
-// Its checksum and its tables at once where that pays; the answer is that of one after the other.
-// Of two threads the caller's makes all tables: other threads take memory from heaps of their own,
-// which grow page by page.
+// Checks the checksum and decodes the tables at once where that pays; the answer is that of one
+// after the other. Of two threads the caller's makes all tables: other threads take memory from
+// heaps of their own, which grow page by page.
 base::Result<DecodedImage> decode(base::ByteSpan bytes, const KnownImage* known) {
   if (base::Status header = check_header(bytes); !header) return header.error();
   DecodedImage out;

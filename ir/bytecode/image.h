@@ -220,7 +220,7 @@ struct Image {
   uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
   std::vector<Device> devices;
-  std::vector<PouContent> contents;  // by POU; none in images before version 11
+  std::vector<PouContent> contents;   // by POU; none in images before version 11
   base::SharedVector<HeldPart> held;  // sorted, none twice; none in images before version 13
   Schedule schedule = Schedule::kSendFirst;
 
@@ -232,7 +232,7 @@ struct Image {
 
 // Initial bytes of data memory at `offset`; what no run covers is zero. O(log runs).
 void read_initial(const Image& image, uint32_t offset, std::span<uint8_t> out);
-// Of an ID slot: the instance that it names from the start and for as long as it lives.
+// For an ID slot: the instance that it names from the start and for as long as it lives.
 uint32_t initial_id(const Image& image, uint32_t slot);
 
 // The stored form: magic, version, length, SHA-256 of the rest, sections.

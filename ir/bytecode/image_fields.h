@@ -97,7 +97,7 @@ void pou_fields(Archive& a, T& v) {
   a(v.first_unit);
   a(v.unit_count);
 }
-// Its tables follow.
+// The tables of the type follow.
 template <class Archive, class T>
 void slots_of(Archive& a, T& v) {
   a.list(v, 17, [&](auto& slot) { slot_fields(a, slot); });

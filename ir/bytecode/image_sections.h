@@ -20,9 +20,9 @@ enum class ImageSection : uint8_t {
   kDevices,
   kSources  // only where sources travel along (embedded_sources.h); no part of ir::Image
 };
-// Of those that are.
+// How many of these sections an image has.
 inline constexpr uint32_t kImageSectionCount = 9;
-// Its content; empty when the image is cut off before its end.
+// The content of the section; empty when the image is cut off before its end.
 base::ByteSpan section_of(base::ByteSpan encoded, ImageSection section);
 // What digest() is the SHA-256 of in a sound image; empty when there is not even a header.
 base::ByteSpan sealed_part(base::ByteSpan encoded);

@@ -12,10 +12,11 @@ inline constexpr uint32_t kImageVersionOfCharts = 9;
 inline constexpr uint32_t kImageVersionOfSources = 10;
 inline constexpr uint32_t kImageVersionOfContents = 11;
 inline constexpr uint32_t kImageVersionOfContentsAndSources = 12;
-// Of code that holds what it does not name (image.h).
+// The version of images with code that holds what it does not name (image.h).
 inline constexpr uint32_t kImageVersionOfHeld = 13;
 inline constexpr uint32_t kImageVersionOfHeldAndSources = 14;
-// Of tasks with a buffer of outputs, or an exchange of their own (task_policy.h).
+// The version of images that have tasks with a buffer of outputs, or an exchange of their own
+// (task_policy.h).
 inline constexpr uint32_t kImageVersionOfTaskExchange = 15;
 inline constexpr uint32_t kImageVersionOfTaskExchangeAndSources = 16;
 inline constexpr uint32_t kLastImageVersion = kImageVersionOfTaskExchangeAndSources;

@@ -108,7 +108,7 @@ struct Object {
   uint32_t recursion_depth = 0;  // as ir::Pou's
   std::string file;
   SourceContent content;  // as ir::Pou's; no part of the canonical bytes
-  // Of an object that was made from an image (linker/unlink.h). What it is known as; 0: by its
+  // For an object that was made from an image (linker/unlink.h): what it is known as; 0: by its
   // canonical bytes. And does its code hold sizes and offsets of types as plain numbers? Then it
   // goes with the layouts that these types have there.
   base::Digest known_as{};

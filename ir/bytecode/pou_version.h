@@ -1,4 +1,4 @@
-// Other code for a POU of an image, of the same length, with the POU's tables.
+// PouVersion: other code for a POU of an image, with the same length, with the POU's tables.
 #pragma once
 
 #include <cstdint>

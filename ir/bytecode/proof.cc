@@ -52,7 +52,7 @@ bool same_instances(const Image& a, const Image& b) {
                     same_instance);
 }
 
-// Of the graph of calls.
+// Are they the same node of the graph of calls?
 bool same_node(const LinkedPou& a, const LinkedPou& b) {
   return a.frame_size == b.frame_size && a.recursion_depth == b.recursion_depth;
 }

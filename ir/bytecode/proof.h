@@ -51,7 +51,8 @@ class Likeness {
   bool instances() const { return instances_; }
   // Whatever verify_calls() reads; `code` is of the image.
   bool calls(const CodeFactsOfAll& code) const;
-  // Of a POU with the same code, which names nothing that is another; null: it must be looked at.
+  // The facts of a POU with the same code, which names nothing that is another; null: it must be
+  // looked at.
   std::shared_ptr<const CodeFacts> code(uint32_t pou) const;
 
  private:

@@ -100,7 +100,7 @@ class RegionMap {
   std::vector<uint32_t> order_;         // of each type: members by offset
   std::vector<uint32_t> first_scalar_;  // by type, in `scalars_`
   std::vector<ScalarPlace> scalars_;    // of each type, by offset
-  // Of types whose members overlap: a tree over the ends of their members by offset.
+  // For types whose members overlap: a tree over the ends of their members by offset.
   std::unordered_map<TypeId, std::vector<uint32_t>> ends_;
 };
 

@@ -128,7 +128,7 @@ class Renamer {
         });
   }
 
-  // The same type in both versions.
+  // Pairs the members of the same type in both versions.
   void pair(TypeId old, TypeId next, uint32_t depth) {
     if (paired_[old.index] || depth > base::kMaxNesting) return;
     paired_[old.index] = true;

@@ -12,7 +12,8 @@
 
 namespace ir {
 
-// Of another version of the same program: what is the same there; nothing, when none is known.
+// What another version of the same program has: what is the same there; nothing, when none is
+// known.
 struct Beside {
   const KnownImage* known = nullptr;
   ImagePlaces& places;          // of the image itself
@@ -239,8 +240,7 @@ void section(Archive& a, I& image, uint32_t number, const Beside& beside) {
       });
     default:
       a.list(image.devices, 25, [&](auto& device) { device_fields(a, device); });
-      a.last_list(image.contents, sizeof(PouContent),
-                  [&](auto& content) { a(content.identity); });
+      a.last_list(image.contents, sizeof(PouContent), [&](auto& content) { a(content.identity); });
       return a.last_list(image.held, 9, [&](auto& row) {
         a(row.pou);
         a.enumerator(row.what.kind, 3);

@@ -51,7 +51,7 @@ void for_each_leaf(const Image& image,
 std::string format_value(const Image& image, const Symbol& symbol, std::span<const uint8_t> memory);
 // Bytes of a scalar or string from a literal as people type it.
 base::Result<base::Bytes> parse_value(const Image& image, TypeId type, std::string_view text);
-// Of a bit: its byte, in which the other bits are 0.
+// The value of a bit is its byte, in which the other bits are 0.
 base::Result<base::Bytes> parse_value(const Image& image, const Symbol& symbol,
                                       std::string_view text);
 

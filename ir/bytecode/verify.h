@@ -40,7 +40,7 @@ class VerifiedImage {
 
 // Keeps `encoded`. Cost: linear in its size.
 base::Result<VerifiedImage> verify(base::Bytes encoded);
-// The same bytes, also for whoever else has them.
+// The same for bytes that others hold, too.
 base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded);
 
 }  // namespace ir

@@ -26,8 +26,8 @@ struct OpcodeChecks {
   bool extended = false;
   bool ends = false;
   bool calls = false;  // POUs, or what is native
-  // It reads scalars and writes one, in places that it names itself, and that is all: no address,
-  // no string, no jump, no table.
+  // The instruction reads scalars and writes one, in places that it names itself, and nothing else:
+  // no address, no string, no jump, no table.
   bool plain = false;
 };
 

@@ -82,7 +82,7 @@ struct CodeFacts {
 struct CodeRoom;  // verify_code.h
 base::Result<CodeFacts> verify_code(const Context& context, CodeRoom& room, uint32_t pou);
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou);
-// Of other code in its place (pou_version.h).
+// The facts of other code in its place (pou_version.h).
 base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
                                     std::span<const Unit> code);
 

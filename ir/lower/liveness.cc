@@ -16,7 +16,7 @@ struct Access {
   bool write;
 };
 
-// Of all blocks, one after the other. An instruction reads before it writes.
+// What all blocks read and write, one after the other. An instruction reads before it writes.
 struct Accesses {
   explicit Accesses(const Machine& machine) {
     begins.push_back(0);

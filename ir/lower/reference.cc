@@ -100,7 +100,7 @@ void Selector::handle_into(const Location& at, Operand dest) {
   emit(Opcode::HANDLE, dest, field_of(at), {}, extension_of(at));
 }
 
-// Of an instance: from the ID in its slot, unless its area is known already.
+// The handle of an instance: from the ID in its slot, unless its area is known already.
 void Selector::instance_handle_into(const Location& at, Operand dest) {
   const Region slot = at.place.result;
   if (at.behind_addr && at.place.steps.empty() && slot.dim == 0 && at.place.region == slot) {

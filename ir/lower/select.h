@@ -27,7 +27,7 @@ namespace ir::codegen {
 struct Location {
   bool behind_addr = false;
   Operand addr;  // register, when behind_addr
-  // Of a path behind a handle that is not resolved yet: `place` counts from there.
+  // The path is behind a handle that is not resolved yet: `place` counts from there.
   bool behind_handle = false;
   Operand handle;
   Base base = Base::kFrame;

@@ -11,7 +11,7 @@
 namespace ir::opt {
 namespace {
 
-// Of an integer or bool; u64 has none, for its values do not fit.
+// The range of an integer or bool; u64 has none, for its values do not fit.
 struct Range {
   int64_t low = 0;
   int64_t high = 0;

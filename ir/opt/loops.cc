@@ -129,7 +129,8 @@ class Loops {
     }
   }
 
-  // Those that stay come first, in their order. Returns how many.
+  // Takes out what does not change in the loop. Instructions that stay come first, in their order;
+  // returns how many they are.
   size_t take_out(std::vector<Inst>& insts) {
     size_t stay = 0;
     for (size_t i = 0; i < insts.size(); ++i) {
@@ -174,7 +175,7 @@ class Loops {
     changed_ = true;
   }
 
-  // The same value in front of the loop. Constants and loads of locals are operands of bytecode:
+  // The equal value in front of the loop. Constants and loads of locals are operands of bytecode:
   // to make them again costs nothing.
   ValueId in_front(ValueId value, uint32_t line) {
     const Definition definition = definitions_[value.index];
@@ -207,7 +208,7 @@ class Loops {
   std::vector<std::vector<uint32_t>> latches_;  // by head; empty: there is no loop
   std::vector<Definition> definitions_;         // by value
   std::vector<bool> wanted_;                    // by value
-  // Of the loop at hand.
+  // The head of the loop at hand.
   uint32_t head_ = 0;
   uint32_t front_ = kNone;  // the block in front of it
   std::vector<uint32_t> body_;

@@ -104,7 +104,8 @@ struct Known {
   uint32_t block = 0;
 };
 
-// Of two floats that are no numbers the first one comes out (ir/types/not_a_number.h).
+// Addition does not commute there: of two floats that are no numbers the first one comes out
+// (ir/types/not_a_number.h).
 bool commutes(Op op, Scalar scalar) {
   if (op == Op::kAdd || op == Op::kMul) return !is_float(scalar);
   return op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kEq || op == Op::kNe;
@@ -148,7 +149,7 @@ class Numbers {
       if (wanted) known_at_end_[b] = known_;
     }
     if (same_.empty()) return false;
-    // Those that could trap, too: they did not, the first time.
+    // Repeated operations that could trap go, too: they did not trap the first time.
     for (Block& block : pou_.blocks) {
       std::erase_if(block.insts, [this](const Inst& inst) {
         return inst.result.valid() && same_(inst.result) != inst.result;
@@ -164,8 +165,8 @@ class Numbers {
     return end.op == Op::kTry && end.targets[1].block.index == to;
   }
 
-  // Of a place that begins with a member of the own instance or of the globals, and stays there:
-  // such places meet only when that member is the same.
+  // The area of a place that begins with a member of the own instance or of the globals, and stays
+  // there: such places meet only when that member is the same.
   static uint32_t area_of(const Place& place) {
     const bool base = place.base == PlaceBase::kSelf || place.base == PlaceBase::kGlobal;
     const bool apart = base && !place.steps.empty() && place.steps[0].kind == StepKind::kMember &&

@@ -80,8 +80,8 @@ std::vector<uint32_t> callees_first(const Callees& all) {
   return order;
 }
 
-// The same order in steps: POUs of one step do not see each other. In a circle of calls somebody
-// comes before its callee, and sees it as it was.
+// The order of callees first, in steps: POUs of one step do not see each other. In a circle of
+// calls somebody comes before its callee, and sees it as it was.
 std::vector<std::vector<uint32_t>> steps_of(const Program& program) {
   const Callees callees = find_callees(program);
   const std::vector<uint32_t> order = callees_first(callees);

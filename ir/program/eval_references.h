@@ -18,8 +18,8 @@ class References {
 
   void add_area(Variable& root, uint32_t id, uint32_t generation, uint32_t data);
 
-  // Of the place `at`; exposes its root when that is a local. `task` numbers the exposures.
-  // nullopt: more locals are exposed than a machine allows (kStack).
+  // The handle of the place `at`; exposes its root when that is a local. `task` numbers the
+  // exposures. nullopt: more locals are exposed than a machine allows (kStack).
   std::optional<uint64_t> handle_of(const Address& at, uint32_t task);
   uint64_t handle_of_instance(const Variable& instance) const;
   // The handle moved by the low 32 bits of `bytes`, with their sign.
@@ -55,7 +55,7 @@ class References {
   };
   const Home* home_of(uint64_t handle) const;
   uint32_t new_segment(uint32_t task);
-  // Of the variable that the handle was taken from; no bytes: it is lost.
+  // The reach of the variable that the handle was taken from; no bytes: it is lost.
   static Reach reach_in(const Home& home, uint64_t handle);
   uint32_t room_for_string(const Home& home, Reach reach, uint32_t offset) const;
   static bool touches_slot(const Home& home, uint64_t begin, uint64_t end);

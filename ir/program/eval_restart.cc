@@ -21,7 +21,7 @@ void for_each_leaf(Variable& variable, const std::function<void(Variable&)>& vis
 
 }  // namespace
 
-// Those inside others too.
+// Visits members inside of others, too.
 void EvalRestart::for_each_member(Variable& owner, const Visit& visit) {
   const bool members = program_.types.has_members(owner.type);
   for (size_t i = 0; i < owner.parts.size(); ++i) {

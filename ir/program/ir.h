@@ -267,7 +267,7 @@ struct Task {
   TaskPolicy policy = {};
 };
 inline constexpr uint32_t kNoEvent = 0xffffffff;
-// Of a program instance that runs when others call it, and only then.
+// The task of a program instance that runs when others call it, and only then.
 inline constexpr uint32_t kNoTask = 0xffffffff;
 
 struct ProgramInstance {

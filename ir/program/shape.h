@@ -5,7 +5,7 @@
 
 namespace ir {
 
-// The same bytes under any layout: an addr of one may stand for the other.
+// Have both types the same bytes under any layout? Then an addr of one may stand for the other.
 // Aliases and subranges of one elementary type are one shape.
 bool same_shape(const TypeTable& types, TypeId a, TypeId b);
 // What kCopy may copy: one shape, or two strings of one kind.

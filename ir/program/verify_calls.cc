@@ -10,7 +10,7 @@
 namespace ir {
 namespace {
 
-// Whose results can be read: of one function, of none, or not known yet.
+// The function whose results can be read; or none, or not known yet.
 constexpr uint32_t kNobody = 0xfffffffeu;
 constexpr uint32_t kUnknown = 0xffffffffu;
 

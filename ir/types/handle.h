@@ -49,7 +49,7 @@ constexpr int32_t handle_away(uint64_t handle) {
 constexpr uint64_t with_away(uint64_t handle, int32_t away) {
   return handle_place(handle) | static_cast<uint64_t>(away) << (32 + kSegmentBits);
 }
-// Of what has no variable: the offset moves, and wraps; all else stays.
+// Moves the handle of something without a variable: the offset moves, and wraps; all else stays.
 constexpr uint64_t move_offset(uint64_t handle, uint64_t bytes) {
   return (handle & ~uint64_t{0xffffffffu}) | (handle_offset(handle) + static_cast<uint32_t>(bytes));
 }

@@ -26,7 +26,7 @@ bool covers(const Layouts& layouts, TypeId owner, size_t member, const Member& o
   return at >= begin && at - begin < member_size(layouts, of);
 }
 
-// Of members that overlap, one of the wanted type comes before others.
+// Among members that overlap, one of the wanted type comes before others.
 size_t member_inside(const TypeTable& types, const Layouts& layouts, const Part& part,
                      TypeId target) {
   const std::vector<Member>& members = types[part.type].members;

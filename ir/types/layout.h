@@ -26,7 +26,7 @@ struct Layouts {
   const TypeLayout& operator[](TypeId id) const { return of[id.index]; }
 };
 
-// The same type in both versions, including the layout of everything embedded:
+// Is it the same type in both versions, including the layout of everything embedded:
 // a value can stay where it is, byte for byte.
 bool same_value_type(const TypeTable& old_types, const Layouts& old_layouts, TypeId old_type,
                      const TypeTable& new_types, const Layouts& new_layouts, TypeId new_type);

@@ -11,7 +11,7 @@
 
 namespace ir {
 
-// Of a constant.
+// Is the constant no number?
 constexpr bool is_nan(Scalar scalar, uint64_t bits) {
   if (scalar == Scalar::kF32) return (bits & 0x7fffffffu) > 0x7f800000u;
   return scalar == Scalar::kF64 && (bits & ~uint64_t{0} >> 1) > uint64_t{0x7ff} << 52;

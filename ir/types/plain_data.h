@@ -13,9 +13,9 @@ namespace ir {
 // Elementary values, strings, and structures and arrays of such; without an address of their own.
 bool is_plain_data(const TypeTable& types, TypeId id);
 
-// Of plain data: two types with the same digest, also of two programs, have the same values in the
-// same order, whatever lies between them. nullopt: it is none, or it has more than kMaxPlainParts
-// parts (an array of scalars is one).
+// The digest of plain data: two types with the same digest, also of two programs, have the same
+// values in the same order, whatever lies between them. nullopt: it is none, or it has more than
+// kMaxPlainParts parts (an array of scalars is one).
 inline constexpr uint32_t kMaxPlainParts = 1u << 20;
 std::optional<base::Digest> plain_signature(const TypeTable& types, const Layouts& layouts,
                                             TypeId id);

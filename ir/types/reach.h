@@ -33,8 +33,8 @@ struct Reach {
 inline constexpr int32_t kLost = -8;
 inline constexpr int32_t kWhole = 7;  // of a whole instance
 
-// Of the variables of a type that has an area of its own, inherited ones included; sorted.
-// Variables without bytes have none.
+// The reaches of the variables of a type that has an area of its own, inherited ones included;
+// sorted. Variables without bytes have none.
 std::vector<Reach> area_reaches(const TypeTable& types, const Layouts& layouts, TypeId type);
 // The one that holds the offset; none: its size is 0. Without branches on the offsets, which may be
 // another variable's each time.
@@ -54,8 +54,8 @@ constexpr bool is_inside(uint64_t handle) {
 }
 // The byte in its variable that stands for the handle; of no meaning when the handle is lost.
 uint32_t anchor_of(uint64_t handle);
-// Of the variable that `handle` was taken from, in an area of so many bytes; no bytes: there is
-// none.
+// The reach of the variable that `handle` was taken from, in an area of so many bytes; no bytes:
+// there is none.
 Reach reach_of(std::span<const Reach> sorted, uint32_t area_bytes, uint64_t handle);
 // `handle`, which was taken from the variable with that reach (without bytes: from none), moved by
 // so many bytes, of which the low 32 bits count, with their sign. The same for one step as for

@@ -152,13 +152,13 @@ struct Type {
   // of a member says. Always so for kUnion; of a kStruct: OVERLAP, or members AT %Bn.
   bool overlap = false;
   std::vector<EnumLiteral> literals;
-  // Of a function block: all that it implements, those of its base and parents of
-  // interfaces included. Of an interface: all its parents.
+  // All interfaces that a function block implements, those of its base and parents of interfaces
+  // included; all parents of an interface.
   std::vector<TypeId> interfaces;
   ConstId init;  // default initial value when it is not all zero
   OldNameId old_name;
 
-  // Of an array, over all dimensions.
+  // The elements of an array, over all dimensions.
   uint64_t element_count() const;
 };
 

@@ -114,7 +114,7 @@ base::Status Change::stage_steps(base::ByteSpan bytes, Strategy strategy,
   pending_ = std::make_unique<Pending>(std::move(*package), before, *image, strategy, same);
   state_ = State::kPlanned;
   if (interrupted()) return abandoned("when its plan was checked");
-  // Its code slots are written now (prime()).
+  // The code slots of the change below are written now (prime()).
   if (!below_.empty() && below_.back()->waiting) retired_ = std::move(below_.back()->waiting);
   base::Result<std::unique_ptr<vm::Generation>> next = controller_.prepare(*image);
   if (!next.ok()) return next.error();

@@ -84,7 +84,7 @@ class Change {
                      const AtBoundary& at_boundary = {}, TakenOut taken_out = {});
   // Values that would be lost if the switch came now; by kPrepared, at a boundary.
   std::vector<LiveLoss> live_losses() const;
-  // The same of a copy of data memory, at any time: what a report shows, kMostLosses of them.
+  // The losses in a copy of data memory, at any time: what a report shows, kMostLosses of them.
   // `allow_loss` permits exactly those that were there then (arm()).
   std::vector<LiveLoss> live_losses(std::span<const uint8_t> memory) const;
   uint64_t count_losses(std::span<const uint8_t> memory) const;
@@ -100,7 +100,8 @@ class Change {
   // In trial: what undo() would do.
   const Plan& undo_plan() const;
   Strategy strategy() const;
-  // Of the switch; in trial, of undo. On this machine, if set_pace() has been told of it.
+  // The pause of the switch; in trial, that of undo. It is that of this machine, if set_pace() has
+  // been told of it.
   int64_t predicted_pause_ns() const;
   // By kPrepared, at a boundary: work that must be done before the switch, as far as idle time goes
   // (C5). In place: new variables in bytes that version 1 does not use get their initial values

@@ -19,9 +19,9 @@ class ChartNet {
  public:
   // Nothing is known of it.
   ChartNet() = default;
-  // Of instances of `type`, those of the types that it extends included. `ir::Image::charts` says
-  // nothing of the charts of older compilers. A net of absurd size (more than a million steps of
-  // work) is not known either.
+  // The chart of instances of `type`, with those of the types that it extends. `ir::Image::charts`
+  // says nothing of the charts of older compilers. A net of absurd size (more than a million steps
+  // of work) is not known either.
   ChartNet(const ir::Image& image, ir::TypeId type);
 
   bool known() const { return !sums_.empty(); }

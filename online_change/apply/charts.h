@@ -12,12 +12,12 @@
 
 namespace online_change {
 
-// Of versions with the same_data(): do their charts lead from the same steps to the same?
+// For versions with the same_data(): do their charts lead from the same steps to the same?
 bool same_nets(const ir::Image& a, const ir::Image& b);
 
 class Charts {
  public:
-  // None of them has another step or transition than before.
+  // No chart has another step or transition than before.
   Charts() = default;
   // `old_image` has the new version's names.
   Charts(const ir::Image& old_image, const ir::Image& new_image);
@@ -37,9 +37,9 @@ class Charts {
  private:
   struct Step {
     uint32_t member = 0;
-    uint32_t at = 0;         // in the old version's memory; X is its first byte
-    uint32_t new_at = 0;     // in the new one's, of a step that stays or is new
-    uint32_t next = kNone;   // its member in the new version, or that of the step that takes over
+    uint32_t at = 0;        // in the old version's memory; X is its first byte
+    uint32_t new_at = 0;    // in the new one's, of a step that stays or is new
+    uint32_t next = kNone;  // its member in the new version, or that of the step that takes over
     uint32_t size = 0;
     bool goes = false;
     bool active = false;  // at the switch

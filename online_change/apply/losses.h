@@ -19,7 +19,7 @@ LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_a
 // A reference of the old version at `at` whose target the change drops.
 LiveLoss describe_broken(const Areas& old_areas, uint32_t at, ir::TypeId type,
                          std::span<const uint8_t> memory);
-// The same at the boundary, where only its place in the new version is known.
+// The loss at the boundary, where only its place in the new version is known.
 LiveLoss broken_at(const Areas& new_areas, uint32_t at);
 // An output that nobody writes any more, and that is not zero (case 67).
 bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,

@@ -10,8 +10,8 @@
 
 namespace online_change {
 
-// Of the old version. However many rows there are, and whoever made them: an instance is in two
-// groups at most.
+// Places in the old version. However many rows there are, and whoever made them: an instance is in
+// two groups at most.
 struct LostPlaces {
   struct Row {
     bool dropped = false;

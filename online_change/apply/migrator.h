@@ -40,9 +40,9 @@ class Migrator {
   // Takes the inputs as those of a run without running: on the way back, what nobody has written
   // since needs no migration.
   void note(const uint8_t* memory);
-  // The same version, made anew.
+  // Runs migrations by `code`, which is the same version, made anew.
   void run_by(const vm::Generation& code);
-  // Of the longest run so far, for predictions, and of the last one.
+  // The fuel of the longest run so far, for predictions, and of the last one.
   uint64_t fuel_used() const { return most_fuel_; }
   uint64_t last_fuel() const { return fuel_; }
 

@@ -34,7 +34,7 @@ class PagePieces {
   static constexpr uint32_t kPageBytes = 4096;
 
   PagePieces() = default;
-  // Of the pages below `pages`; memory and time follow the bytes that the pieces span.
+  // The pieces of the pages below `pages`; memory and time follow the bytes that the pieces span.
   PagePieces(const Transfer& transfer, size_t pages);
   std::span<const uint32_t> of(size_t page) const {
     return std::span(pieces_).subspan(begin_[page], begin_[page + 1] - begin_[page]);

@@ -75,10 +75,10 @@ class Standby {
   std::vector<ir::Extent> blocks_;  // of the running version's areas; none crosses a page
   uint64_t compared_bytes_ = 0;
   PagePieces of_page_;
-  // Of the first copy: blocks that are copied, then pieces that are moved.
+  // How far the first copy is: blocks that are copied, then pieces that are moved.
   size_t copied_ = 0;
   size_t moved_ = 0;
-  // Of a pass: blocks that were looked at, then where its pieces go on.
+  // How far a pass is: blocks that were looked at, then where its pieces go on.
   bool passing_ = false;
   size_t looked_ = 0;
   size_t again_at_ = 0;

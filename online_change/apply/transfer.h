@@ -48,8 +48,8 @@ struct Piece {
 
 class Transfer {
  public:
-  // Those of the boundary; those that are done before it in place (A19); all, in place; all, into
-  // a memory apart.
+  // Steps of the boundary; steps that are done before it in place (A19); all, in place; all, into a
+  // memory apart.
   enum class Steps : uint8_t { kBoundary, kEarly, kAll, kApart };
   Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to, Steps which);
 
@@ -75,7 +75,8 @@ class Transfer {
   void restore(uint8_t* memory) const { restore_first(memory, pieces_.size()); }
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  // Of the way back, after remember(): a piece that this plan will initialise or convert.
+  // For the way back, after remember(): the bytes of a piece that this plan will initialise or
+  // convert.
   const uint8_t* remembered(const Piece& piece) const { return remembered_.data() + piece.at; }
   // Of the way there: what it has made of the value for `offset`, converted; null: none is.
   const uint8_t* converted(uint32_t offset, uint32_t size) const;

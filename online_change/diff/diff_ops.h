@@ -15,7 +15,7 @@ FateRow make_row(Fate fate, std::string path, std::string old_type, std::string 
                  std::string reason, uint64_t count);
 DiffOp make_op(DiffKind kind, uint32_t from, uint32_t to, uint32_t size, uint64_t leaves);
 
-// The same operations for `count` neighbours. False: too many pieces.
+// Repeats the operations for `count` neighbours. False: too many pieces.
 bool repeat(std::vector<DiffOp>& ops, uint64_t count, uint32_t from_stride, uint32_t to_stride);
 void shift(std::vector<DiffOp>& ops, uint32_t from, uint32_t to);
 // Sorts by target and joins unchanged neighbours that move by the same distance.

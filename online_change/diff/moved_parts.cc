@@ -165,7 +165,7 @@ class Finder {
   std::vector<MovedPart> take() { return std::move(out_); }
 
  private:
-  // Of two rules for one place the first counts, also where one is for a part of it.
+  // The first of two rules for one place counts, also where one is for a part of it.
   bool is_taken(const PartPlace& to) const {
     return std::any_of(out_.begin(), out_.end(), [&](const MovedPart& move) {
       const uint64_t begin = move.to.at;

@@ -38,8 +38,8 @@ std::vector<ReferenceLeaf> reference_leaves(const ir::Image& image);
 
 class PlaceMoves {
  public:
-  // Whose rules say what was moved between variables (moved_parts.h): kBack when the old image is
-  // the one that is changed to, on the way back from it.
+  // The version whose rules say what was moved between variables (moved_parts.h): kBack when the
+  // old image is the one that is changed to, on the way back from it.
   enum class Way : uint8_t { kThere, kBack };
   // Everything stays.
   PlaceMoves() = default;

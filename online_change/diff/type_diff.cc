@@ -20,7 +20,6 @@ using ir::TypeId;
 constexpr const char* kBecomesConstant = "constant";
 constexpr const char* kBecomesInput = "an input now";
 
-
 // Members by name; a program may have very many.
 class MemberNames {
  public:
@@ -312,7 +311,7 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
   const TypeDiff& inner = value(old_member.type, new_member.type);
   bool becomes_constant = new_member.constant && !(old_member.constant && inner.same);
   bool was_initialised = back_ && old_member.constant && !(new_member.constant && inner.same);
-  // Of an instance it is the slot, and of a stamp nobody asks: these have no row.
+  // An instance is a slot there, and nobody asks about a stamp: these have no row.
   const bool has_row = !new_is_instance && new_member.section != Section::kStamp;
   const bool comes_or_goes = is_input(new_member) != is_input(old_member);
   const bool input = comes_or_goes && (back_ || is_input(new_member));

@@ -62,7 +62,7 @@ struct TypeDiff {
   bool renamed = false;       // some row says that a variable was renamed
   // Paths of rows whose variables were moved here or away (moved_parts.h).
   std::set<std::string> moved;
-  // Of function blocks that are new here: what they may be called by mistake, by folded name.
+  // For function blocks that are new here: what they may have been called, by folded name.
   std::map<std::string, std::string> hints;
 };
 

@@ -22,14 +22,14 @@ struct FleetFile {
   // boundary.
   std::vector<std::string> steps;
   bool steps_if_needed = false;  // only where there is no room for all at once
-  base::Bytes original;     // encoded images, without sources
+  base::Bytes original;          // encoded images, without sources
   base::Bytes edited;
 };
 
 inline constexpr std::string_view kFleetMagic = "STCFLEET";
 bool has_fleet_magic(base::ByteSpan bytes);
 
-// The same content is the same bytes.
+// Equal content gives equal bytes.
 base::Bytes encode(const FleetFile& file);
 // Each part has a checksum of its own: kBadHash names the part. Of a good form; the images are
 // verified by whoever uses them. kBadFormat, kTooLarge.

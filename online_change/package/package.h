@@ -19,7 +19,7 @@ struct Package {
 };
 
 base::Bytes encode(const Package& package);
-// The same, without what the base has too: it can be decoded beside the base only.
+// The package without what the base has too: it can be decoded beside the base only.
 base::Bytes encode_short(const Package& package, base::ByteSpan base_image);
 // In three parts: layout, program (together the image), commands. All three checksums are verified
 // before anything of them is used (C4): kBadHash names the part. Consistency with the images is
@@ -32,7 +32,7 @@ base::Error stale_base(const base::Digest& base, const base::Digest& running);
 base::Status check_package(const Package& package, const ir::Image& old_image,
                            const ir::Image& new_image);
 base::Result<Package> make_package(base::ByteSpan old_image, base::ByteSpan new_image);
-// Of images that were verified, or come from the linker.
+// For images that were verified, or come from the linker.
 base::Result<Package> make_package(const EncodedImage& from, const EncodedImage& to);
 // The same in the short form, without a package in between.
 base::Result<base::Bytes> make_short_package(const EncodedImage& from, const EncodedImage& to);

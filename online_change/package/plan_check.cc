@@ -4,15 +4,14 @@
 #include <cstring>
 
 #include "base/limits.h"
-#include "online_change/diff/type_diff.h"
 #include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
+#include "online_change/diff/type_diff.h"
 #include "online_change/diff/value_conversion.h"
 #include "online_change/package/package.h"
 
 namespace online_change {
 namespace {
-
 
 bool is_area(const ir::Image& image, Node node) {
   return image.types[node.type].kind == ir::Kind::kGlobals;
@@ -142,12 +141,12 @@ bool PlanCheck::check_gather(const UpdateStep& step) {
   return true;
 }
 
-// Its bits may be any, or it is a BOOL that one bit makes.
+// Every pattern of bits is a value of the node's type, or it is a BOOL that one bit makes.
 bool PlanCheck::check_gathered(Node node, const Target& target, uint32_t depth) {
   if (node.in_out) return fail(node.begin, "is no variable that has bits at an address");
   if (takes_any_bits(new_.types, node.type)) {
     const Gather& parts = plan_.gathers[step_of(target).from];
-    // Of a value that no part writes as a whole the initial bytes count.
+    // For a value that no part writes as a whole the initial bytes count.
     return (is_initialised(node.begin, size_of(node), target) && !parts.empty()) ||
            fail(node.begin, "is initialised with something else than its initial value");
   }
@@ -330,8 +329,7 @@ bool PlanCheck::check_grown_union(Node node) {
   const std::optional<Target> front = first_behind(node.begin);
   const bool copied = front && front->to <= node.begin;
   const uint64_t behind = copied ? front->end() : front->to;
-  const uint32_t from =
-      copied ? source_of(*front) + (node.begin - front->to) : node.begin;
+  const uint32_t from = copied ? source_of(*front) + (node.begin - front->to) : node.begin;
   const std::optional<Node> source = old_areas_.leaf_at(from);
   const uint64_t end = uint64_t{node.begin} + size_of(node);
   const std::optional<Target> rest = first_behind(static_cast<uint32_t>(behind));
@@ -340,8 +338,7 @@ bool PlanCheck::check_grown_union(Node node) {
       (!copied || step_of(*front).kind == StepKind::kCopy) &&
       keeps_union_bytes(old_, source->type, new_, node.type) &&
       behind == uint64_t{node.begin} + old_.layouts[source->type].size && rest &&
-      rest->to <= behind && rest->end() >= end &&
-      step_of(*rest).kind == StepKind::kInitialise &&
+      rest->to <= behind && rest->end() >= end && step_of(*rest).kind == StepKind::kInitialise &&
       is_initialised(static_cast<uint32_t>(behind), static_cast<uint32_t>(end - behind), *rest);
   return right || fail(node.begin, "is written in part only");
 }

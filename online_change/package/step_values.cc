@@ -93,7 +93,7 @@ std::optional<StepValue> StepValues::first_behind(uint32_t place) const {
   const auto begun = static_cast<size_t>(behind - combs_.begin());
   std::optional<StepValue> best;
   if (begun < combs_.size()) best = value({static_cast<uint32_t>(begun), 0, 0});
-  // Those of the combs begun that end after it.
+  // Looks at the combs begun that end after the place.
   const auto look = [&](const auto& self, size_t node, size_t first, size_t count) -> void {
     if (first >= begun || ends_[node] <= place) return;
     if (node >= leaves_) {

@@ -20,7 +20,7 @@ struct StepValue {
 
 class StepValues {
  public:
-  // Of each step: count and size are not 0, its values do not overlap each other, and end below
+  // In each step count and size are not 0, its values do not overlap each other, and end below
   // 2^32.
   explicit StepValues(const std::vector<UpdateStep>& steps);
 

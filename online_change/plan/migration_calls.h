@@ -35,7 +35,7 @@ class MigrationCalls {
   const Migrations& migrations_;
   const ir::Image& from_;
   const ir::Image& code_;
-  // Of the instance at hand, by number in migrations_ and place of what is read.
+  // Calls of the instance at hand, by number in migrations_ and place of what is read.
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> here_;
 };
 

@@ -43,8 +43,8 @@ struct ChosenLimits {
   OnlineLimits limits;
   std::string text;  // "those of stvm 0.1.0", as people read it
 };
-// Of no version, and of one without a row: the strictest of all rows. Of several: the strictest of
-// theirs (E-20).
+// For no version, and for one without a row: the strictest of all rows. For several: the strictest
+// of theirs (E-20).
 ChosenLimits chosen_limits(std::span<const OnlineLimits> rows,
                            const std::vector<std::string>& versions);
 

@@ -61,9 +61,9 @@ bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
 // migrations are not known.
 BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image,
                            bool early_too);
-// Of BOOLs, when code that may write others into their bytes goes.
+// How many BOOLs need it, when code that may write others into their bytes goes.
 uint64_t bools_to_normalise(const ir::Bools& before, const ir::Bools& after);
-// Of that, in place.
+// The pause of that work, in place.
 int64_t predicted_pause_ns(const Plan& plan, const ir::Image& old_image,
                            const ir::Image& new_image);
 

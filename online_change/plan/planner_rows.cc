@@ -13,7 +13,7 @@ std::string join_path(const std::string& instance, const std::string& relative) 
   return instance.empty() && !relative.empty() ? relative.substr(1) : instance + relative;
 }
 
-// Of the name and kind of `like`.
+// Has the image a type with the name and kind of `like`?
 bool has_type(const ir::Image& image, const ir::Type& like) {
   for (uint32_t i = 0; i < image.types.size(); ++i) {
     const ir::Type& type = image.types[ir::TypeId{i}];
@@ -51,7 +51,7 @@ uint32_t Planner::row_of(const Carried& instance, uint32_t diff_row, uint64_t le
   });
 }
 
-// Of what was moved, from the path in its area.
+// Names the old place of what was moved, from the path in its area.
 void Planner::name_old_place(const Carried& instance, FateRow& row) const {
   if (row.old_path.empty()) return;
   row.old_path = join_path(old_.instance_path(instance.old_id), row.old_path);
@@ -150,10 +150,9 @@ std::string Planner::type_rename_hint(ir::TypeId before, ir::TypeId after) const
   const ir::Type& gone = old_.types[before];
   const ir::Type& came = new_.types[after];
   if (gone.kind != came.kind || has_type(new_, gone) || has_type(old_, came)) return {};
-  const bool same = std::equal(gone.members.begin(), gone.members.end(), came.members.begin(),
-                               came.members.end(), [](const ir::Member& a, const ir::Member& b) {
-                                 return ir::same_name(a.name, b.name);
-                               });
+  const bool same = std::equal(
+      gone.members.begin(), gone.members.end(), came.members.begin(), came.members.end(),
+      [](const ir::Member& a, const ir::Member& b) { return ir::same_name(a.name, b.name); });
   return same ? "; if `" + gone.name + "` is called `" + came.name +
                     "` now, write {renamed from := '" + gone.name + "'} before it"
               : std::string();

@@ -217,7 +217,7 @@ class SystemEdits {
     }
     return out;
   }
-  // Of those programs that the task runs in the other version, too.
+  // The order of those programs that the task runs in the other version, too.
   static std::string order(const ir::Image& image, const ir::ImageTask& task,
                            const std::map<std::string, std::string>& other,
                            const std::string& name) {

@@ -22,7 +22,8 @@ std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image
 // By name, in order of what is said of each.
 std::vector<SystemEdit> device_edits(const ir::Image& old_image, const ir::Image& new_image);
 
-// Of charts that both versions have under one name: "Filling -> Full removed", "(A, B) -> C new".
+// The edits of charts that both versions have under one name: "Filling -> Full removed", "(A, B) ->
+// C new".
 std::vector<SystemEdit> chart_edits(const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace online_change

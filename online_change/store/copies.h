@@ -34,7 +34,7 @@ class Copies {
   // Writes over whatever the copy holds, with the next sequence number; a dead copy gets a new
   // file.
   base::Status write(size_t number, const Payload& payload);
-  // The same after what is newest: that stays the newest one.
+  // Writes a copy that counts as older than the newest, which stays the newest one.
   base::Status write_older(size_t number, const Payload& payload);
   // A dead copy that holds nothing gets a new file that is empty.
   base::Status renew(size_t number);

@@ -21,7 +21,7 @@ struct StoredEdit {
   base::Digest from{};
   base::Digest to{};
   base::Bytes package;
-  // Of `from`, when it was switched.
+  // The cycle of the retained values of `from`, when it was switched.
   uint64_t retained_cycle = 0;
   base::Bytes retained;
 };
@@ -30,9 +30,9 @@ base::Bytes encode(const std::vector<StoredEdit>& edits);
 // Nullopt for what no controller has written; the packages and values are not looked at.
 std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload);
 
-// Those that lead from what boots to what is on trial, one to the next; none: there is no such way.
-// More may be stored: a power cut can come before the list is shorter, or longer.
-std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits,
-                                    const base::Digest& boots, const base::Digest& trial);
+// The edits that lead from what boots to what is on trial, one to the next; none: there is no such
+// way. More may be stored: a power cut can come before the list is shorter, or longer.
+std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits, const base::Digest& boots,
+                                    const base::Digest& trial);
 
 }  // namespace online_change

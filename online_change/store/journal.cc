@@ -94,7 +94,7 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector) {
 
 namespace {
 
-// Of equal ones, as they were. Numbers are sorted instead of entries: that is less code.
+// Equal ones stay as they were. Numbers are sorted instead of entries: that is less code.
 void sort_by_sequence(std::vector<JournalEntry>& entries) {
   std::vector<std::pair<uint64_t, uint32_t>> order;
   for (const JournalEntry& entry : entries) {

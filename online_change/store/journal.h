@@ -71,12 +71,13 @@ std::optional<JournalEntry> decode_entry(base::ByteSpan sector);
 // error, and so is a file that is not there.
 base::Result<std::vector<JournalEntry>> read_journal(vm::Storage& storage, const std::string& name);
 
-// Those of two, both oldest first, by time; what has the same time stays in its own order.
+// The entries of two lists, both oldest first, by time; what has the same time stays in its own
+// order.
 std::vector<JournalEntry> by_time(std::vector<JournalEntry> entries,
                                   std::vector<JournalEntry> traps);
 
-// Its entries are in memory too: so they can be shown while the disk fails, and are written when it
-// is well again.
+// The journal, whose entries are in memory too, so that they can be shown while the disk fails, and
+// are written when it is well again.
 class Journal {
  public:
   Journal(vm::Storage& storage, std::string name, uint32_t entries)

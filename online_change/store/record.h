@@ -52,8 +52,8 @@ Record read_record(vm::Storage& storage, const std::string& name, RecordKind kin
 // Durable when it returns. After an error the file holds anything.
 base::Status write_record(vm::Storage& storage, const std::string& name, RecordKind kind,
                           uint64_t sequence, const Payload& payload);
-// The same in a new file of `size` bytes at least. After an error the file holds what it held, or
-// the record.
+// Writes the record into a new file of `size` bytes at least. After an error the file holds what it
+// held, or the record.
 base::Status replace_record(vm::Storage& storage, const std::string& name, RecordKind kind,
                             uint64_t sequence, const Payload& payload, uint64_t size);
 

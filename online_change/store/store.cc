@@ -286,7 +286,7 @@ base::Status Store::accept() {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to accept"};
   }
   check_slots_locked();
-  // Of an edit that was undone: what that has dropped would be gone.
+  // The values may be of an edit that was undone: what that has dropped would be gone.
   if (!retained_fits_locked()) return failed("the retained values are of another program still");
   const size_t slot = control_.trial_slot;
   if (in_slot_[slot] != control_.trial_digest) {

@@ -54,7 +54,7 @@ struct StoredImage {
   base::Bytes bytes;
 };
 
-// The same, borrowed. What the image says of itself is its digest: other bytes are found to be
+// StoredImage, borrowed. What the image says of itself is its digest: other bytes are found to be
 // damaged when they are read.
 struct ImageToStore {
   ImageToStore(const base::Digest& sum, base::ByteSpan all) : digest(sum), bytes(all) {}
@@ -74,7 +74,7 @@ struct Recovered {
   std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
   std::optional<base::Digest> trial_lost;  // unless it resumes
   bool resumes = false;
-  std::vector<StoredImage> held;  // what else the slots hold
+  std::vector<StoredImage> held;    // what else the slots hold
   bool virgin = false;              // nothing was ever stored here, as far as anybody can tell
   std::string nothing;              // why there is no `boots`
   std::vector<std::string> alarms;  // what is damaged
@@ -91,10 +91,11 @@ class Store {
   void reject_boots();
   // A lost trial is over, and both control records are whole again.
   base::Status settle();
-  // The same, and a trial goes on.
+  // Settles, and a trial goes on.
   base::Status make_whole();
 
-  // This program boots from now on, nothing is on trial. `retain_bytes`: of its retained values.
+  // Installs this program: it boots from now on, nothing is on trial. `retain_bytes`: of its
+  // retained values.
   base::Status install(const ImageToStore& image, uint64_t retain_bytes);
   // Writes an image of which nothing is known yet into the slot that begin_trial() would take,
   // beside whatever else is done, and keeps its bytes until then: begin_trial() of the same bytes
@@ -105,8 +106,7 @@ class Store {
   // more: this is an edit that was made on top of it, or one below it. retained_fits() must be true
   // (kStorageFailed), but for an edit below that is still stored.
   // `resumes`: it boots, and stays on trial, as long as the edits that lead to it are kept.
-  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes,
-                           bool resumes = false);
+  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes, bool resumes = false);
   base::Status set_resumes(bool resumes);
   // The edits on trial, oldest first. A cut leaves the ones that were kept before, or these.
   base::Status keep_edits(const std::vector<StoredEdit>& edits);
@@ -114,8 +114,9 @@ class Store {
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();
-  // This program, an edit below the one that is on trial, boots from now on; that stays on trial.
-  // `values`: its retained values from before the edits above it, which a lost trial goes back to.
+  // Accepts this program, an edit below the one that is on trial: it boots from now on, and the
+  // other stays on trial. `values`: its retained values from before the edits above it, which a
+  // lost trial goes back to.
   base::Status accept_below(const ImageToStore& image, uint64_t cycle, base::ByteSpan values);
   // The program that accept() is about to replace by `next`, in a file of its own: a cut leaves the
   // one that was kept before, or this one (X8). Nothing boots from it.
@@ -150,9 +151,9 @@ class Store {
   void tell(Tell tell) { tell_ = std::move(tell); }
   // Something has happened: it is told, and kept where its row says.
   void note(JournalEntry entry);
-  // The same of what has been told.
+  // Keeps an entry that has been told already.
   void keep(JournalEntry entry);
-  // Of both rings, by time.
+  // The entries of both rings, by time.
   std::vector<JournalEntry> history() const;
 
   // Looks whether all files are still there; complaints() names those that are not. To be called
@@ -207,9 +208,10 @@ class Store {
   size_t free_trial_slot() const;
   base::Status write_retained(size_t copy, const RetainRecord& record, bool older);
   bool may_save_retained(const base::Digest& image) const;
-  // Of the retained records that can be read, with a layout that is stored.
+  // The newest of the retained records that can be read, with a layout that is stored.
   std::optional<size_t> newest_retained() const;
-  // That one is of a trial that has not been accepted: the newest from before it.
+  // The newest record from before the trial, when the newest of all is of a trial that has not been
+  // accepted.
   std::optional<size_t> retained_before() const;
   // The newest of the program that boots, not from a trial.
   std::optional<size_t> newest_accepted() const;

@@ -5,10 +5,7 @@
 #include "online_change/store/store.h"
 
 namespace online_change {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 base::Status Store::keep_before(const ImageToStore& image, const base::Digest& next) {
   base::Bytes payload(next.begin(), next.end());
@@ -31,7 +28,8 @@ base::Result<StoredImage> Store::before() const {
     return base::Error{base::Refusal::kStorageFailed,
                        "the version before cannot be read, or is damaged"};
   }
-  // It was kept for an accept that a power cut has prevented, or a later one could not be kept.
+  // The record was kept for an accept that a power cut has prevented, or a later one could not be
+  // kept.
   const base::Digest boots_now = boots();
   if (!std::equal(boots_now.begin(), boots_now.end(), payload.begin())) {
     return base::Error{base::Refusal::kNothingToUndo,

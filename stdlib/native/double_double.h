@@ -20,7 +20,7 @@ constexpr Pair two_sum(double a, double b) {
   return {sum, (a - (sum - part)) + (b - part)};
 }
 
-// The same when |a| >= |b| or a is 0.
+// The sum of both and its error, when |a| >= |b| or a is 0.
 constexpr Pair fast_two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};

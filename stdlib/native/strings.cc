@@ -137,7 +137,8 @@ uint64_t character(Text<Unit> of, int64_t at) {
   return is_inside ? load<Unit>(of.data + size_t{index} * sizeof(Unit)) : 0;
 }
 
-// Of the units after the end nothing is known, so those up to the new one get defined here.
+// Nothing is known of the units after the end nothing is known, so those up to the new one get
+// defined here.
 template <typename Unit>
 void set_character(Text<Unit> of, int64_t at, uint64_t code) {
   const Unit unit = static_cast<Unit>(code);

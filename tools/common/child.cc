@@ -210,7 +210,7 @@ namespace {
 constexpr const char* kFolderPrefix = "stvm-";
 constexpr const char* kFolderMark = "/.stvm-temporary";
 
-// Those in `parent` whose owner lives no more. What has no mark is none of ours.
+// Removes folders in `parent` whose owner lives no more. What has no mark is none of ours.
 void remove_left_folders(const std::string& parent) {
   std::error_code failed;
   std::filesystem::directory_iterator at(parent, failed);

@@ -23,7 +23,7 @@ class ConnectedChild {
   ConnectedChild(ConnectedChild&& other) noexcept;
   ConnectedChild& operator=(ConnectedChild&&) = delete;
   ~ConnectedChild();  // waits for its end
-  // Its exit code, once it has ended; -1 when it was killed.
+  // The exit code of the child, once it has ended; -1 when it was killed.
   int wait();
   // Asks it to end, as a terminal does; it need not wait for what it is waiting for.
   void end();

@@ -31,7 +31,7 @@ void set_refusal_form(RefusalForm form);
 
 // Says "TOOL: R0401: text" and the way out on stderr; returns the exit code.
 int refuse(const char* tool, const base::Error& error);
-// The same after a report on standard output that says it already.
+// Refuses after a report on standard output that says it already.
 int refuse_reported(const char* tool, const base::Error& error);
 int exit_code(const base::Error& error);
 

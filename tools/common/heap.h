@@ -11,7 +11,7 @@ namespace tools {
 // that is a tenth of the time of a compilation.
 void keep_freed_memory();
 
-// The same of large pieces, for programs that stay and need as much again and again: pages that
+// Keeps large pieces, for programs that stay and need as much again and again: pages that
 // they give back cost more than what is done with them.
 void keep_large_pieces();
 

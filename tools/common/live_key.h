@@ -8,7 +8,7 @@
 
 namespace tools {
 
-// Of LiveValues (fate_report.h).
+// The key of a row in LiveValues (fate_report.h).
 inline std::string live_key(const online_change::FateRow& row) {
   return row.old_type.empty() ? row.path + " new" : row.path;
 }

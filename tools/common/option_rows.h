@@ -33,7 +33,7 @@ inline constexpr OptionRow kWarnOption{"--warn|-W",
 #define TOOLS_COMPILE_OPTIONS                                                              \
   tools::kDialectOption, tools::kResourceOption, tools::kDefineOption, tools::kNameOption, \
       tools::kJobsOption, tools::kWarnOption
-// Those of the compile options that were given, as "--name=value".
+// The compile options that were given, as "--name=value".
 std::vector<std::string> given_compile_options(const Options& options);
 
 inline constexpr OptionRow kFormatOption{"--format", "FORM", "text (default) or json", "text|json"};
@@ -62,7 +62,7 @@ inline constexpr OptionRow kColorOption{
     "auto|always|never"};
 inline constexpr OptionRow kEveryCommand[] = {kQuietOption, kColorOption};
 
-// Of runs in this process: `stvm run`, `replay`, `serve`.
+// Options of runs in this process: `stvm run`, `replay`, `serve`.
 inline constexpr OptionRow kScansOption{"--scans", "N",
                                         "control cycles to run (default: all, or until stopped)"};
 inline constexpr OptionRow kPrintOption{
@@ -74,7 +74,7 @@ inline constexpr OptionRow kTraceOption{
     "--trace", "FILE", "CSV: values after every scan, of --print or of all variables"};
 inline constexpr OptionRow kRecordOption{"--record", "FILE", "record the run, for `stvm replay`"};
 
-// Of everything that talks to a controller.
+// Options of everything that talks to a controller.
 inline constexpr OptionRow kDirOption{
     "--dir", "STATE", "state directory of the controller (default: $STVM_DIR, else .stvm)"};
 inline constexpr OptionRow kHostOption{"--host", "HOST",

@@ -48,7 +48,8 @@ struct ProjectFile {
 
 // kBadProject with line and column for what is no TOML; errors of read_text(), too.
 base::Result<ProjectFile> read_project_file(const std::string& path);
-// The same for unknown keys and wrong values; tables [devices.NAME] are not looked into.
+// Reads the file and refuses unknown keys and wrong values; tables [devices.NAME] are not looked
+// into.
 base::Result<ProjectFile> read_checked_project_file(const std::string& path);
 
 // Why `code` cannot have a level in [warnings] or after --warn; "": it can.

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-// Of two images that are sound, encoded.
+// The edits between two images that are sound, encoded.
 SystemEdits source_edits(base::ByteSpan old_image, base::ByteSpan new_image);
 
 }  // namespace tools

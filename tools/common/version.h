@@ -9,8 +9,8 @@
 
 namespace tools {
 
-// Of a generated file (scripts/identity.cmake). Only the two programs have it, so a commit compiles
-// that file and links nothing else.
+// From a generated file (scripts/identity.cmake). Only the two programs have it, so a commit
+// compiles that file and links nothing else.
 extern const char kVersion[];
 extern const char kCommit[];  // "unknown" in what is built outside of a repository
 // Where a page for each code is ("/E3001" after it); "": nowhere that this build knows of.

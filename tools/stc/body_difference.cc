@@ -39,7 +39,7 @@ std::string place_text(const std::vector<BodyLine>& lines, size_t begin, size_t 
   return first == last ? "line " + first : "lines " + first + " to " + last;
 }
 
-// Those near each other are one piece.
+// Differences near each other are one piece.
 void compare_lines(const UnitBody& before, const UnitBody& after,
                    std::vector<PartDifference>& out) {
   std::vector<std::string> texts[2];

@@ -18,7 +18,7 @@ struct CoverageWishes {
   bool counts() const { return !folder.empty() || least; }
 };
 
-// Of `stc test`. Errors: kUsage.
+// What the options of `stc test` ask for. Errors: kUsage.
 base::Result<CoverageWishes> coverage_wishes(const tools::Options& options);
 
 // Writes the files, and with `text` the table for people. False: less was reached than wanted, and

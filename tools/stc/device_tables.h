@@ -22,8 +22,8 @@ struct ProjectDevice {
 base::Result<std::vector<ProjectDevice>> read_devices(std::string_view file,
                                                       const tools::TomlTable& table);
 
-// Those of one of the resources `all`; of a project with one resource at most (`all` is empty), all
-// devices. kBadMapping for a device that does not say which resource has it.
+// The devices of one of the resources `all`; of a project with one resource at most (`all` is
+// empty), all devices. kBadMapping for a device that does not say which resource has it.
 base::Result<std::vector<ir::Device>> devices_of(const std::vector<ProjectDevice>& devices,
                                                  const std::string& resource,
                                                  const std::vector<std::string>& all);

@@ -20,8 +20,8 @@ base::Result<Embedding> Embedding::of(const Project& project) {
   };
   for (uint32_t file = 0; file < project.read_sources; ++file) {
     if (!project.sources.is_source(file)) continue;
-    base::Status added = add(std::string(project.sources.file_name(file)),
-                             std::string(project.sources.text(file)));
+    base::Status added =
+        add(std::string(project.sources.file_name(file)), std::string(project.sources.text(file)));
     if (!added.ok()) return added.error();
   }
   for (const ReadFile& file : project.other_files) {
@@ -35,14 +35,13 @@ base::Result<Embedding> Embedding::of(const Project& project) {
       build.push_back(*path);
     }
   }
-  base::Result<ir::EmbeddedSources> packed =
-      ir::pack_sources(std::move(files), std::move(build));
+  base::Result<ir::EmbeddedSources> packed = ir::pack_sources(std::move(files), std::move(build));
   if (!packed.ok()) return packed.error();
   out.section_ = ir::encode_sources(*packed);
   return out;
 }
 
-// Of a document that sources were made of: `plant.xml/Motor.st`.
+// The path of a document that sources were made of: `plant.xml/Motor.st`.
 std::string Embedding::path_of(const std::string& file) const {
   if (const auto known = paths_.find(file); known != paths_.end()) return known->second;
   for (size_t slash = file.rfind('/'); slash != std::string::npos && slash != 0;

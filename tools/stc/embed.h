@@ -15,14 +15,14 @@ namespace stc {
 
 class Embedding {
  public:
-  // None where the project does not want it. Errors: kBadProject of a file outside of the folder,
-  // by a link or as typed; kTooMany.
+  // Nothing is embedded where the project does not want it. Errors: kBadProject of a file outside
+  // of the folder, by a link or as typed; kTooMany.
   static base::Result<Embedding> of(const Project& project);
 
   // Where sources travel, names of files in the image are paths from the folder of the project,
   // too: those as typed are others at the next place.
   void name_files(ir::Image& image) const;
-  // The same in `copy`; the image itself where nothing travels.
+  // The image with named files, made in `copy`; the image itself where nothing travels.
   const ir::Image& named(const ir::Image& image, ir::Image& copy) const;
   // An image whose files are named so, with its sources.
   ir::WrittenImage encode(const ir::Image& image, const ir::KnownImage* known) const {

@@ -19,9 +19,9 @@ class FileEvents {
   FileEvents(const FileEvents&) = delete;
   FileEvents& operator=(const FileEvents&) = delete;
 
-  // Of the files in these folders from now on, and of no others; "" is the current folder. Nothing
-  // is missed in folders that it was told of before. False when it is not told of all that is
-  // written there: too many folders, or a file system of a kind that others may write to (a
+  // Watches the files in these folders from now on, and no others; "" is the current folder.
+  // Nothing is missed in folders that it was told of before. False when it is not told of all that
+  // is written there: too many folders, or a file system of a kind that others may write to (a
   // network's).
   bool watch(const std::set<std::string>& folders);
   // Readable when something has happened; -1: never.

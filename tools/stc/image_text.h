@@ -8,7 +8,7 @@
 
 namespace stc {
 
-// The same without hash and code sizes: what a golden file of mode link shows.
+// The layout without hash and code sizes: what a golden file of mode link shows.
 std::string layout_text(const ir::Image& image);
 std::string image_text(const ir::Image& image, const base::Digest& digest);
 // "path : type @ offset" for every leaf variable.

@@ -16,7 +16,7 @@ namespace stc {
 
 // By its extension: .xml .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj
 bool is_importable(const std::string& path);
-// The same without .xml, which many other things are.
+// Is it a file of TwinCAT by its name? Not by .xml, which many other files have.
 bool is_twincat(const std::string& path);
 
 class Importer {

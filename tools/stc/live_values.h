@@ -9,8 +9,8 @@
 
 namespace stc {
 
-// Of those of `names` that the controller at `place` (a state directory, or a host to ssh to) has,
-// by the stvm beside this tool. Errors: what that one refuses.
+// The values of those of `names` that the controller at `place` (a state directory, or a host to
+// ssh to) has, by the stvm beside this tool. Errors: what that one refuses.
 base::Status fetch_values(const std::string& place, const std::vector<std::string>& names,
                           frontend::draw::Live& live);
 

@@ -20,7 +20,7 @@ void expect_input(uint64_t bytes);
 // For whoever gives out memory (small_blocks.cc).
 // May `bytes` more be taken? Counts them when they may.
 bool take_memory(size_t bytes) noexcept;
-// They are taken already.
+// Counts bytes that are taken already.
 void count_memory(size_t bytes) noexcept;
 void give_memory(size_t bytes) noexcept;
 // Would more than half of the budget be taken, with `bytes` more?

@@ -49,9 +49,9 @@ class OnlineBase {
   const ir::Image& original() const { return original_.image; }
   // Adds what the rules say of an edited version; errors refuse it.
   void check(const Project& project, const ir::Image& edited, base::Diagnostics& diagnostics) const;
-  // The same of one that was linked against original(): whether a change can be planned, too.
+  // Checks a version that was linked against original(): whether a change can be planned, too.
   void check(const Project& project, const Version& edited, base::Diagnostics& diagnostics) const;
-  // Of those of several resources, the one that original() is of.
+  // Among the versions of several resources, the one that original() is of.
   const ResourceVersion& matching(const std::vector<ResourceVersion>& versions) const;
 
  private:

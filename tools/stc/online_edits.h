@@ -7,7 +7,8 @@
 
 namespace stc {
 
-// Of the versions of stvm that are targets; as target_versions() gives them. `width` in columns.
+// The page for the versions of stvm that are targets, as target_versions() gives them. `width` in
+// columns.
 std::string online_edits_page(const std::vector<std::string>& targets, uint32_t width);
 std::string online_edits_json(const std::vector<std::string>& targets);
 

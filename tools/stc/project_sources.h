@@ -13,7 +13,7 @@ bool is_source_name(const std::string& path);
 // `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
 // kFileUnreadable.
 base::Result<std::vector<std::string>> source_files(const std::string& path);
-// The same for files of other tools (importer.h); of `.xml` only with `any_xml`.
+// The same list for files of other tools (importer.h); of `.xml` only with `any_xml`.
 base::Result<std::vector<std::string>> importable_files(const std::string& path, bool any_xml);
 
 // What `sources = [...]` names, each file once: files, folders with all below them, and patterns of

@@ -11,7 +11,7 @@ namespace stc {
 std::string rendered(const base::Diagnostics& diagnostics, const base::SourceMap& sources,
                      base::DiagnosticFormat format, bool colour, const base::Error* refused);
 
-// Of a run without diagnostics: what tools::set_refusal_form() takes.
+// The text for a run without diagnostics: what tools::set_refusal_form() takes.
 std::string refusal_json(const base::Error& error);
 std::string refusal_sarif(const base::Error& error);
 std::string refusal_github(const base::Error& error);

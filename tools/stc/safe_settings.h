@@ -24,7 +24,7 @@ base::Result<SafeSettings> parse_safe_settings(const std::string& file,
 // Every row lies inside the outputs of the program; kBadProject.
 base::Status check_safe_settings(const SafeSettings& settings, uint32_t output_bytes);
 
-// Those of the rows that do.
+// The rows that lie inside.
 std::vector<ir::SafeOutput> safe_rows_inside(const SafeSettings& settings, uint32_t output_bytes);
 
 }  // namespace stc

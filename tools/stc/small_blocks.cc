@@ -60,7 +60,7 @@ struct Lists {
   Lists* next = nullptr;
 };
 
-// Of the first and the last span of a run, instead of the number of a size.
+// Marks the first and the last span of a run, instead of the number of a size.
 constexpr uint8_t kFreeRun = 0xfe;
 constexpr uint8_t kLargeBlock = 0xff;
 static_assert(kSizes <= kFreeRun);
@@ -70,7 +70,7 @@ constexpr size_t kSpans = kRange / kSpan;
 
 struct Run {
   uint32_t length = 0;  // in spans; of free runs also at the last span
-  // Of free runs: neighbours in the list, a span plus 1; 0: none.
+  // In free runs: neighbours in the list, a span plus 1; 0: none.
   uint32_t next = 0;
   uint32_t before = 0;
 };
@@ -152,7 +152,7 @@ void take_free(size_t span) {
   if (run.next != 0) runs[run.next - 1].before = run.before;
 }
 
-// Of at least this length.
+// A free run of at least this length.
 size_t find_free(size_t length) {
   constexpr int kMost = 64;  // runs to look at
   int looked = 0;

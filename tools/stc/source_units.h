@@ -11,11 +11,12 @@
 
 namespace stc {
 
-// Of sources, or of the image when `paths` is one.
+// The units of sources, or of the image when `paths` is one.
 base::Result<std::vector<Unit>> source_units(const tools::Options& options,
                                              const std::vector<std::string>& paths,
                                              const Version& version);
-// Of an image. Errors: kFileNotFound when none travel with it, kBadFormat, those of load_project().
+// The units of an image. Errors: kFileNotFound when none travel with it, kBadFormat, those of
+// load_project().
 base::Result<std::vector<Unit>> source_units(const Version& version);
 
 }  // namespace stc

@@ -10,8 +10,9 @@
 
 namespace stc {
 
-// None: together. Errors name the step that cannot come there: kUsage, kCannotRelink. kMixture: a
-// unit would run with an old version of one that it calls, without --allow-mixture (E-24).
+// The steps of the start; none: all units together. Errors name the step that cannot come there:
+// kUsage, kCannotRelink. kMixture: a unit would run with an old version of one that it calls,
+// without --allow-mixture (E-24).
 base::Result<std::vector<std::string>> start_steps(const tools::Options& options,
                                                    const linker::EditImages& edit);
 // A line for each.

@@ -15,7 +15,7 @@ bool is_wanted(const tools::Options& options, const std::string& name) {
   return tools::matches(wild ? pattern : "*" + pattern + "*", name);
 }
 
-// The same order on every machine: no distribution of the library decides.
+// The order is the same on every machine: no distribution of the library decides.
 void shuffle(std::vector<frontend::TestCase>& cases, uint64_t seed) {
   std::mt19937_64 numbers(seed);
   for (size_t left = cases.size(); left > 1; --left) {

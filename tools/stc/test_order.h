@@ -18,7 +18,8 @@ struct TestOrder {
   std::optional<uint64_t> seed;  // that gives this order again; none: that of the sources
 };
 
-// Those of `first`, by file and name ("a_test.st/starts"), come before all others. Errors: kUsage.
+// Orders the tests. Those of `first`, by file and name ("a_test.st/starts"), come before all
+// others. Errors: kUsage.
 base::Result<TestOrder> order_tests(const std::vector<frontend::TestCase>& cases,
                                     const tools::Options& options,
                                     const std::set<std::string>& first = {});

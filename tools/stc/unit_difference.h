@@ -30,7 +30,7 @@ struct PartDifference {
   Differs how = Differs::kEdited;
   std::string before = {};
   std::string after = {};
-  std::string what = {};  // of a box: its pins that differ
+  std::string what = {};                  // of a box: its pins that differ
   std::vector<DifferingLine> lines = {};  // of lines and rungs
 };
 struct UnitDifference {
@@ -46,7 +46,7 @@ struct UnitDifference {
 std::vector<UnitDifference> differences(const std::vector<Unit>& before,
                                         const std::vector<Unit>& after);
 
-// Of parts that have a name; of bodies (body_difference.cc).
+// Compares parts that have a name; body_difference.cc compares bodies.
 void compare_parts(const std::vector<UnitPart>& before, const std::vector<UnitPart>& after,
                    std::vector<PartDifference>& out);
 void compare_bodies(const std::vector<UnitBody>& before, const std::vector<UnitBody>& after,

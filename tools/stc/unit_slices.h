@@ -18,7 +18,7 @@ class Slices {
   std::string plain(base::SourceSpan span) const { return plain_text(of(span)); }
   // From `begin` to the semicolon that ends it.
   std::string to_semicolon(base::SourcePos begin) const;
-  // Of all its variables; the span of a block is that of its first word.
+  // The span of all its variables; that of a block is that of its first word.
   base::SourceSpan whole(const frontend::VarBlock& block) const;
   std::vector<BodyLine> lines(base::SourceSpan span) const;
   uint32_t line(base::SourcePos at) const { return sources_.locate(at).line; }
@@ -36,7 +36,7 @@ class Slices {
 // Every run of blanks is one, those at the ends are none.
 std::string squeezed(std::string_view line);
 
-// Of a block of variables: "VAR_INPUT RETAIN".
+// The section of a block of variables: "VAR_INPUT RETAIN".
 std::string section_text(const frontend::VarBlock& block);
 
 }  // namespace stc

@@ -234,7 +234,7 @@ class Units {
     return out;
   }
 
-  // Those of a file are one unit.
+  // The globals of a file are one unit.
   void add_globals() {
     for (size_t i = 0; i < tree_.globals.size();) {
       const std::string_view file = slices_.file(tree_.globals[i].span.begin);

@@ -61,9 +61,9 @@ class WatchTarget {
   virtual bool is_for_tests() const { return false; }
 };
 
-// Of the project that the arguments name. Until it is ended by a signal or by the target; an exit
-// code only then, and when the project cannot be opened at first. Mistakes in sources and files
-// that cannot be read are reported, and it goes on. A file that is away is waited for.
+// Watches the project that the arguments name, until it is ended by a signal or by the target; an
+// exit code only then, and when the project cannot be opened at first. Mistakes in sources and
+// files that cannot be read are reported, and it goes on. A file that is away is waited for.
 int watch(const tools::Options& options, bool move_all, base::DiagnosticFormat format,
           WatchTarget& target);
 

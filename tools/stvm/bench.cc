@@ -65,7 +65,7 @@ Timing summarise(std::vector<double>& times) {
 
 constexpr uint64_t kFuel = 1'000'000'000;
 
-// Of a scan that did not end as it should.
+// The error of a scan that did not end as it should.
 base::Error failure(const vm::Controller& controller, const vm::Execution& execution,
                     vm::Exit exit) {
   if (exit == vm::Exit::kSuspended) {

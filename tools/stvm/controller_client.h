@@ -31,8 +31,8 @@ class ControllerClient {
   // Requests that change state name the version that the last status() or image() saw.
   base::Result<base::Bytes> call(vm::Request request);
   base::Result<vm::StatusReport> status();
-  // The same, and requests go on to name the version that was seen before: what others do meanwhile
-  // refuses them.
+  // Asks for the status, and requests go on to name the version that was seen before: what others
+  // do meanwhile refuses them.
   base::Result<vm::StatusReport> look();
   base::Result<vm::TaskTimes> task_times(const std::string& task);
   base::Result<vm::Values> get(std::vector<std::string> names);
@@ -43,9 +43,9 @@ class ControllerClient {
   base::Status assign(vm::Command command, const std::vector<std::string>& names,
                       const std::vector<std::string>& values);
   base::Result<base::Bytes> image();
-  // That ran before the last accept.
+  // The image that ran before the last accept.
   base::Result<base::Bytes> image_before();
-  // That the edit on trial of that name was made on.
+  // The image that the edit on trial of that name was made on.
   base::Result<base::Bytes> image_before(const std::string& edit);
   base::Result<std::vector<online_change::JournalEntry>> journal();
   // From number `first` on, as far as the controller has them; their `sequence` is that number.
@@ -65,11 +65,11 @@ class ControllerClient {
   base::Result<FatePage> fates();
   // One line for each variable.
   base::Result<std::vector<FateLine>> every_fate();
-  // Of what was staged here, or of nothing (E-14). `health`: a BOOL that must stay TRUE in the
-  // first cycles (X7); "": none.
+  // Switches to what was staged here, or of nothing (E-14). `health`: a BOOL that must stay TRUE in
+  // the first cycles (X7); "": none.
   base::Result<online_change::SwitchReport> make_switch(uint32_t flags,
-                                                         const std::string& health = {});
-  // Of the newest edit on trial, which has that name; "": whatever it is.
+                                                        const std::string& health = {});
+  // Undoes the newest edit on trial, which has that name; "": whatever it is.
   base::Result<online_change::SwitchReport> undo(const std::string& edit = {});
 
  private:

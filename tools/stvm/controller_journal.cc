@@ -72,7 +72,7 @@ void ControllerService::note_switch(Event event, const base::Digest& from,
   store_.note(std::move(done));
 }
 
-// Of the running program or the staged one: room for either.
+// A snapshot with room for the running program or the staged one.
 online_change::Snapshot ControllerService::empty_snapshot() const {
   online_change::Snapshot out;
   uint64_t most = 0;

@@ -7,7 +7,7 @@
 namespace stvm {
 namespace {
 
-// Of which few may match: others ask between two pages.
+// Leaves that one page looks at, of which few may match: others ask between two pages.
 constexpr uint64_t kLeavesPerPage = 100'000;
 
 }  // namespace

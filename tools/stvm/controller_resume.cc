@@ -8,7 +8,7 @@
 namespace stvm {
 namespace {
 
-// Of "E12".
+// The number of "E12".
 uint64_t number_of(const std::string& name) {
   return name.empty() ? 0 : std::strtoull(name.c_str() + 1, nullptr, 10);
 }
@@ -19,8 +19,8 @@ base::Status ControllerService::keep_edits(const Trial* next) {
   std::vector<online_change::StoredEdit> edits;
   const auto add = [&](const Trial& trial) {
     edits.push_back({trial.edit.name, trial.edit.who, trial.edit.time_ns, trial.edit.cycle,
-                     trial.flags, trial.switch_flags, trial.edit.from, trial.edit.to,
-                     trial.package, trial.retained.cycle, trial.retained.values});
+                     trial.flags, trial.switch_flags, trial.edit.from, trial.edit.to, trial.package,
+                     trial.retained.cycle, trial.retained.values});
   };
   for (const Trial& trial : trials_) add(trial);
   if (next != nullptr) add(*next);
@@ -36,8 +36,12 @@ void ControllerService::resume(const std::vector<online_change::ResumedEdit>& ed
         i + 1 < edits.size() ? edits[i + 1].before : controller_.verified();
     adopted = change_.adopt(stored.package, edits[i].before, after, stored.retained);
     if (!adopted.ok()) break;
-    Trial trial{describe(edits[i].before, after, change_.plan()), edits[i].before,
-                stored.package, stored.stage_flags, stored.switch_flags, {}};
+    Trial trial{describe(edits[i].before, after, change_.plan()),
+                edits[i].before,
+                stored.package,
+                stored.stage_flags,
+                stored.switch_flags,
+                {}};
     trial.edit.name = stored.name;
     trial.edit.who = stored.who;
     trial.edit.time_ns = stored.time_ns;
@@ -53,7 +57,7 @@ void ControllerService::resume(const std::vector<online_change::ResumedEdit>& ed
     not_undone_ = "the edits on trial have no way back: " + base::to_string(adopted.error()) +
                   "; the next start runs " + base::short_hex(store_.boots());
     trials_.clear();
-    // Those below the one that failed have a way back only together with it.
+    // Edits below the one that failed have a way back only together with it.
     if (change_.on_trial() != 0) (void)change_.accept();
     complain(store_.set_resumes(false));
   }

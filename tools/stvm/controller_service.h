@@ -49,13 +49,13 @@ class ControllerService : public vm::Service {
   ControllerService(vm::Controller& controller, vm::Clock& clock, online_change::Store& store,
                     vm::Boundary& boundary, StartReport start = {},
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
-  // Of the program that serves.
+  // Sets the version of the program that serves.
   void is_version(std::string version) { version_ = std::move(version); }
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
   // A replay: no cycle comes while a request is carried out, so idle time is what it was then.
   void stand_between_cycles() { stands_ = true; }
-  // Whose events are shown to those who ask; it must outlive this.
+  // Sets the log whose events are shown to those who ask; it must outlive this.
   void show_events(const EventLog& log) { events_ = &log; }
   // The trial of another process goes on (D4); before anything is answered. What cannot is an
   // alarm, and its edits have no way back.
@@ -161,12 +161,12 @@ class ControllerService : public vm::Service {
   base::Status check_expected(const vm::Request& request) const;
   // Runs `job` on the control thread at a boundary and waits for its end.
   base::Status at_boundary(const std::function<void()>& job);
-  // The same of a job that only reads: a recording has nothing of it.
+  // The same for a job that only reads: a recording has nothing of it.
   base::Status look_at_boundary(const std::function<void()>& job);
   // `take(free_ns)` at boundaries until it has everything.
   base::Status copy_at_boundaries(const std::function<vm::Copied(int64_t)>& take);
   base::Result<vm::LiveCopy> copy_of(std::vector<ir::DataRange> ranges);
-  // Of the change that is looked_at(). `next`, `whole`: as LiveReport::take().
+  // Reports on the change that is looked_at(). `next`, `whole`: as LiveReport::take().
   base::Status look(const ir::Image* next, bool whole);
   Answer every_page(uint64_t first, const online_change::Plan& plan, const ir::Image& next,
                     FatePage page);
@@ -214,7 +214,7 @@ class ControllerService : public vm::Service {
   base::Error not_switched(const base::Error& why);
   // The running image boots next, and only then the change is final, with all that it was made on.
   base::Status make_permanent();
-  // The same of the oldest `edits` of those on trial; the others stay so.
+  // Makes the oldest `edits` of those on trial; the others stay so.
   base::Status make_oldest_permanent(size_t edits);
 
   // controller_abort.cc
@@ -225,7 +225,7 @@ class ControllerService : public vm::Service {
   };
   // Where it is; 0: none is named.
   base::Result<uint32_t> find_unless(const std::string& name) const;
-  // Of a dry run beside another change.
+  // Checks the condition of a dry run beside another change.
   base::Status check_unless(const std::string& name);
   // At a boundary: it is TRUE, now or since it was named.
   bool unless_holds();
@@ -234,7 +234,8 @@ class ControllerService : public vm::Service {
   // Beside boundaries: did anybody, or the condition, end what is being prepared?
   bool aborted();
   base::Error abort_error() const;
-  // It is: the standby side is cleared, and it is noted why. The error to say so with.
+  // Gives the change up: the standby side is cleared, and it is noted why. Returns the error that
+  // says so.
   base::Error give_up();
   // What was staged over this connection has been given up.
   base::Status check_not_aborted() const;
@@ -243,7 +244,7 @@ class ControllerService : public vm::Service {
   bool has_no_program() const;
   // To what is staged. Accepted at once.
   Answer switch_to_first();
-  // It boots from now on. `retained`: what is stored of it, if anything.
+  // The first program boots from now on. `retained`: what is stored of its values, if anything.
   base::Status store_first(base::Bytes& retained);
   // At a boundary after its switch.
   void begin_first(base::ByteSpan retained);
@@ -275,7 +276,7 @@ class ControllerService : public vm::Service {
 
   // controller_journal.cc
   online_change::JournalEntry entry(online_change::Event event) const;
-  // Of a command that is no change.
+  // Notes the end of a command that is no change.
   void note_done(online_change::Event event, const std::string& who, std::string text);
   // Notes it, and is the error.
   base::Error refused(const base::Error& error);

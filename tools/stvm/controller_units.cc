@@ -13,7 +13,7 @@
 namespace stvm {
 namespace {
 
-// Of the POUs, types and variables of an edit, each: an edit is one message.
+// How many POUs, types and variables of an edit are shown, each: an edit is one message.
 constexpr size_t kShownRows = 200;
 constexpr size_t kShownBytes = vm::kMaxMessageBytes / 8;
 
@@ -84,8 +84,7 @@ TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
 }
 
 base::Result<base::Bytes> ControllerService::units(const vm::Request& request) {
-  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr,
-                            previous()));
+  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr, previous()));
 }
 
 base::Result<base::Bytes> ControllerService::edits(const vm::Request& request) {
@@ -132,14 +131,17 @@ base::Result<base::Bytes> ControllerService::facts(const vm::Request&) const {
 // does.
 base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
   if (undone_.empty()) {
-    return base::Error{base::Refusal::kNothingToUndo, "no edit was undone that could be brought "
-                                                      "again"};
+    return base::Error{base::Refusal::kNothingToUndo,
+                       "no edit was undone that could be brought "
+                       "again"};
   }
   const Trial& next = undone_.back();
   if (!request.names.empty() && request.names.front() != next.edit.name) {
-    return base::Error{base::Refusal::kNothingToUndo,
-                       "`" + request.names.front() + "` is not the edit that was undone last, "
-                       "which is " + next.edit.name + "; `stvm edits` shows them"};
+    return base::Error{base::Refusal::kNothingToUndo, "`" + request.names.front() +
+                                                          "` is not the edit that was undone last, "
+                                                          "which is " +
+                                                          next.edit.name +
+                                                          "; `stvm edits` shows them"};
   }
   if (next.edit.from != controller_.verified().digest()) {
     return base::Error{base::Refusal::kStaleBase,

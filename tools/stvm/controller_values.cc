@@ -176,8 +176,8 @@ base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request)
 
 base::Result<base::Bytes> ControllerService::forces(const vm::Request&) { return force_rows({}); }
 
-// Of the variables with these names, or all. Only this thread's commands change forces, so they can
-// be read here.
+// The forces of the variables with these names, or all. Only this thread's commands change forces,
+// so they can be read here.
 base::Bytes ControllerService::force_rows(const std::vector<std::string>& names) const {
   vm::ForceRows forces;
   const ir::Image& image = controller_.image();

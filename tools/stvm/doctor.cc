@@ -117,7 +117,7 @@ Finding clock_source() {
   return {Finding::Kind::kPoor, "clock", source, "reading it takes about a microsecond; use tsc"};
 }
 
-// Of the groups that this process is in, from its own upwards.
+// Looks at the groups that this process is in, from its own upwards.
 Finding quota() {
   std::string group = first_line("/proc/self/cgroup");
   const size_t colon = group.rfind(':');

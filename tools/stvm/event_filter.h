@@ -21,7 +21,7 @@ struct EventFilter {
   int64_t since_ns = INT64_MIN;
   online_change::Level level = online_change::Level::kInfo;  // this one and those above it
 
-  // Of the options --since and --level, "" where one is not given; kUsage.
+  // The filter of the options --since and --level, "" where one is not given; kUsage.
   static base::Result<EventFilter> parse(const std::string& since, const std::string& level,
                                          int64_t now_ns);
   bool shows(const online_change::JournalEntry& entry) const {

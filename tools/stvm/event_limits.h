@@ -17,7 +17,7 @@ class EventLimits {
   static constexpr uint64_t kOfPlant = 5;
   static constexpr uint64_t kOfPeople = 50;
   static constexpr uint64_t kWhileFlooded = 1;  // in a period after one with too many
-  // Of different sources at a time; those of more share a count.
+  // How many sources are counted apart at a time; more share a count.
   static constexpr size_t kMostSources = 256;
 
   struct LeftOut {
@@ -31,7 +31,7 @@ class EventLimits {
   bool pass(online_change::Event event, const std::string& source, int64_t now_ns);
   // So many have been left out elsewhere.
   void count(online_change::Event event, uint64_t more, int64_t now_ns);
-  // Of periods that are over, or of `all`.
+  // What was left out in periods that are over, or in `all`.
   std::vector<LeftOut> take_left_out(int64_t now_ns, bool all = false);
 
  private:

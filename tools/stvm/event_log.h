@@ -23,7 +23,7 @@ namespace stvm {
 class EventLog {
  public:
   static constexpr size_t kMostKept = 2048;
-  // Those of the machine; a test has others.
+  // The clocks of the machine; a test has others.
   class Clocks {
    public:
     virtual ~Clocks() = default;
@@ -42,7 +42,7 @@ class EventLog {
 
   // For the control thread.
   vm::EventRing& ring() { return ring_; }
-  // It is looked at for its end; null: no more.
+  // Watches the recorder for its end; null: no more.
   void watch(const vm::Recorder* recorder) { recorder_ = recorder; }
   // A thread looks from now on.
   void start();
@@ -54,7 +54,7 @@ class EventLog {
 
   // Any other thread. False: there were too many like it, and it only counts.
   bool take(const online_change::JournalEntry& entry);
-  // Of a device, by its thread, perhaps after the end of the store.
+  // Takes an event of a device, by its thread, perhaps after the end of the store.
   void take_device(vm::DeviceEvent event, const std::string& device, const std::string& text);
   // Events from number `first` on, as sectors of a journal, at most so many bytes; their `sequence`
   // is that number, from 1.

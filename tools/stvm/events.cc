@@ -55,7 +55,7 @@ class Shown {
               : log_line(event_row(entry.event).level, entry.time_ns, event_text(entry), false);
     std::fputs(text.c_str(), stdout);
   }
-  // Of `all`, oldest first, what has come after the newest durable one that was printed.
+  // Prints of `all`, oldest first, what has come after the newest durable one that was printed.
   void print_rest(const Entries& all) {
     const auto same = [&](const JournalEntry& entry) {
       return newest_durable_ && entry.event == newest_durable_->event &&

@@ -13,7 +13,7 @@ struct FleetEdit {
   std::string path;
   base::Digest digest{};
   tools::FleetParts parts;
-  bool matching = false;  // only the units that fit
+  bool matching = false;                // only the units that fit
   std::vector<std::string> steps = {};  // E-25; ir::of_step()
   bool steps_if_needed = false;
 };
@@ -22,7 +22,7 @@ struct FleetEdit {
 base::Result<FleetEdit> read_fleet_edit(const std::string& path);
 // "fleet file 9c4c6cbc5a09"
 std::string fleet_note(const base::Digest& digest);
-// The same of a file, where `stvm change` is given one; "": it is no fleet file.
+// The note of a file, where `stvm change` is given one; "": it is no fleet file.
 std::string fleet_note_of(const std::string& path);
 
 }  // namespace stvm

@@ -10,7 +10,7 @@ namespace stvm {
 
 struct FleetEdits {
   std::vector<TrialEdit> on_trial;  // all of them, newest first
-  // Of the file, newest first, without those that were taken back alone since.
+  // The edits of the file, newest first, without those that were taken back alone since.
   std::vector<std::string> here;
   std::vector<std::string> names() const;  // of all on trial
 };

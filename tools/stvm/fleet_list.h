@@ -20,7 +20,7 @@ struct FleetMember {
   bool allow_loss = false;
 };
 
-// Of a file. Mistakes with line and column (kBadProject).
+// Reads the list of a file. Mistakes with line and column (kBadProject).
 base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file);
 // --dir, --host, and --fleet FILE in the order of the file. kUsage: there is none, or two have one
 // name.

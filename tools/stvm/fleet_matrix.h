@@ -9,7 +9,7 @@
 
 namespace stvm {
 
-// Of one part on one controller that was reached.
+// What is known of one part on one controller that was reached.
 struct FleetCell {
   base::Digest here{};  // zeros: it has none
   std::string text;     // the state, or the first digits of the identity
@@ -31,8 +31,8 @@ struct FleetMatrix {
   bool differs = false;  // something is odd
 };
 
-// Of an edit: the parts that it changes; odd is what is missing or different. Without: all parts;
-// odd is what most do not have.
+// With an edit: the parts that it changes; odd is what is missing or different. Without one: all
+// parts; odd is what most do not have.
 FleetMatrix fleet_matrix(const std::vector<FleetRow>& rows, bool of_edit);
 
 // Controllers that are alike in all that is shown are one column, under the name of the first one

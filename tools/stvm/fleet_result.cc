@@ -11,7 +11,7 @@
 namespace stvm {
 namespace {
 
-// Of units alone: "2 of 3", what the controller has as the edit wants it.
+// The text of units alone: "2 of 3", what the controller has as the edit wants it.
 std::string units_text(const FleetRow& row) {
   size_t all = 0;
   size_t fit = 0;
@@ -34,10 +34,9 @@ std::string remark(const FleetRow& row) {
 }  // namespace
 
 std::string_view outcome_name(FleetOutcome outcome) {
-  constexpr std::string_view kNames[] = {"done",        "possible",  "had it",    "refused",
-                                         "unreachable", "cancelled", "not asked", "reached",
-                                         "undone",      "accepted",  "had it not",
-                                         "taken back"};
+  constexpr std::string_view kNames[] = {"done",        "possible",  "had it",     "refused",
+                                         "unreachable", "cancelled", "not asked",  "reached",
+                                         "undone",      "accepted",  "had it not", "taken back"};
   return kNames[static_cast<size_t>(outcome)];
 }
 

@@ -45,7 +45,7 @@ std::string others_below(const FleetEdits& edits) {
   return text;
 }
 
-// Of a controller that has none of the edits on trial.
+// The outcome of a controller that has none of the edits on trial.
 FleetOutcome without(const FleetEdit& edit, const ir::VerifiedImage& image) {
   FleetRow row;
   (void)check_parts(edit, image, row).ok();
@@ -130,7 +130,7 @@ FleetRow FleetAccept::visit(const FleetMember& member) {
     base::Status go = how_.confirm();
     if (!go.ok()) return talk_.ended(std::move(row), FleetOutcome::kCancelled, go.error());
   }
-  // Of the version that was looked at: whoever has changed it meanwhile is told so (R0301).
+  // Undoes in the version that was looked at: whoever has changed it meanwhile is told so (R0301).
   base::Result<base::Bytes> done =
       seen->client.call({.command = vm::Command::kAccept, .names = {edits->here.front()}});
   if (!done.ok()) return talk_.failed(std::move(row), done.error());

@@ -38,7 +38,7 @@ class FleetTalk {
   base::Status ask(const char* question, const char* otherwise);
   // What a visit ends with.
   FleetRow ended(FleetRow row, FleetOutcome outcome, const base::Error& why) const;
-  // The same of an error in the middle of it: a controller that is gone is unreachable.
+  // The row after an error in the middle of the visit: a controller that is gone is unreachable.
   FleetRow failed(FleetRow row, const base::Error& why) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace stvm {
 namespace {
 
-// Of the variable as a whole; "no address" also for a part of one.
+// The address of the variable as a whole; "no address" also for a part of one.
 std::string address_of(const ir::Image& image, const vm::Force& force) {
   for (const ir::IoBinding& binding : image.io) {
     if (binding.data == force.symbol.data && binding.type == force.symbol.type) {

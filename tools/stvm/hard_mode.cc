@@ -5,7 +5,7 @@
 namespace stvm {
 namespace {
 
-// The same program, but another version: without that, a change to itself does nothing at all.
+// A copy of the program as another version: without that, a change to itself does nothing at all.
 base::Bytes renamed(const ir::Image& running) {
   ir::Image image = running;
   if (image.name.ends_with('\'')) {

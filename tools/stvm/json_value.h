@@ -13,7 +13,7 @@ namespace stvm {
 // {"type": "INT", "value": 5}. `type` as ir::TypeTable::text() has it; members of structures have
 // none here, so a whole number there is a text only from 2^53 on.
 void typed_value(tools::JsonWriter& json, std::string_view type, std::string_view literal);
-// The same two fields in an object that is open.
+// Writes the two fields in an object that is open.
 void typed_fields(tools::JsonWriter& json, std::string_view type, std::string_view literal);
 
 }  // namespace stvm

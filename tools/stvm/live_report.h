@@ -26,7 +26,8 @@ class LiveReport {
                                        const online_change::Change& change, const ir::Image* next,
                                        bool whole, const CopyRanges& copy_of);
 
-  // Of the variable that the row is about, in the program that runs; "" when there is none.
+  // The value of the variable that the row is about, in the program that runs; "" when there is
+  // none.
   std::string value(const online_change::FateRow& row) const;
   // What it becomes by that step, which is for this row alone; "" for what is no single value.
   std::string result_of(const online_change::FateRow& row, const online_change::UpdateStep& step,
@@ -36,9 +37,9 @@ class LiveReport {
   uint64_t loss_count() const { return loss_count_; }
   bool whole() const { return whole_; }
   const online_change::LiveLoss* loss(const std::string& path) const;
-  // Of one variable: its value, what it becomes and what is lost.
+  // The line of one variable: its value, what it becomes and what is lost.
   tools::FateLine line(const online_change::VariableFate& variable, const ir::Image& next) const;
-  // Of the program that runs, under the names of the next version.
+  // The image of the program that runs, under the names of the next version.
   const ir::Image& image() const { return renamed_ ? *renamed_ : image_.image(); }
 
  private:

@@ -17,10 +17,10 @@ using Names = std::vector<std::string>;
 
 bool is_pattern(std::string_view name);
 
-// The same names with what each pattern matches in its place. kNoSuchVariable when one matches
+// The names with what each pattern matches in its place. kNoSuchVariable when one matches
 // nothing. A controller resolves the other names itself.
 base::Result<Names> matching(ControllerClient& client, const Names& names);
-// Of its forces only.
+// The same among the names of forces only.
 base::Result<Names> matching_forces(ControllerClient& client, const Names& names);
 // Every name comes out as a path (ir/bytecode/variable_names.h).
 base::Result<Names> matching(const ir::Image& image, const Names& names);

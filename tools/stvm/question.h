@@ -13,7 +13,7 @@ bool can_ask();  // a person at a terminal
 // `otherwise`, "not switched; the old program runs on".
 base::Status ask(const char* question, const std::string& otherwise);
 
-// Of one of many; at a terminal only. No answer that is known is no.
+// The answer about one of many; at a terminal only. No answer that is known is no.
 enum class Answer : uint8_t { kNo, kYes, kAll, kQuit };
 Answer ask_for_each(const char* question);
 

@@ -15,9 +15,9 @@ namespace stvm {
 class Rehearsal {
  public:
   Rehearsal() = default;  // empty: stage() makes one
-  // Of the version that runs. `copy_of` reads live data at boundaries; the rest is done beside the
-  // running program. Errors: those of Change::stage(), and kNoMemory where a second range of
-  // addresses cannot be had.
+  // Rehearses a change of the version that runs. `copy_of` reads live data at boundaries; the rest
+  // is done beside the running program. Errors: those of Change::stage(), and kNoMemory where a
+  // second range of addresses cannot be had.
   static base::Result<std::unique_ptr<Rehearsal>> stage(const vm::Controller& running,
                                                         base::ByteSpan package,
                                                         online_change::Strategy strategy,

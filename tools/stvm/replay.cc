@@ -107,7 +107,7 @@ class Player {
     return base::Ok{};
   }
 
-  // It was carried out then, whatever time was left; so it is now.
+  // The request was carried out then, whatever time was left; so it is now.
   base::Status ask(const vm::RecordedRequest& recorded) {
     base::Result<vm::Request> request = vm::decode_request(recorded.bytes);
     if (!request.ok()) return unusable(request.error().text);

@@ -50,7 +50,7 @@ class ResourceController {
   vm::Controller& controller() { return *controller_; }
   vm::Recorder* recorder() { return recorder_.get(); }
   const std::string& name() const { return name_; }
-  // Of a recording: it is whole.
+  // Closes the recording, which is whole then.
   base::Status close() { return recorder_ ? recorder_->close() : base::Status(base::Ok{}); }
 
  private:

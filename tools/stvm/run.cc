@@ -241,7 +241,7 @@ base::Result<int> run_one(const tools::Options& options) {
   expect_programs(sources_of(options));
   auto images = load_programs(sources_of(options));
   if (!images.ok()) return images.error();
-  // They end with the process: taking their tables apart would cost a part of a short run.
+  // The images end with the process: taking their tables apart would cost a part of a short run.
   [[gnu::used]] static const auto* const kept = new std::vector<ir::VerifiedImage>(*images);
   auto resources = name_resources(std::move(*images));
   if (!resources.ok()) return resources.error();

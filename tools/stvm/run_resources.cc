@@ -59,7 +59,7 @@ base::Result<Name> find_name(const Running& running, const std::string& name) {
                      "`" + name + "`: with several resources, names begin with one: " + known};
 }
 
-// Those of --print, as paths after the name of their resource.
+// The names of --print, as paths after the name of their resource.
 base::Result<Names> names_to_print(const Running& running, const Names& names) {
   Names out;
   for (const std::string& name : names) {

@@ -24,8 +24,8 @@
 
 namespace stvm {
 
-// Of --change: staged at its time, configured in idle time only (C5), switched at the first
-// boundary at which its pause fits before the next cycle, and accepted.
+// The change of --change: staged at its time, configured in idle time only (C5), switched at the
+// first boundary at which its pause fits before the next cycle, and accepted.
 class RunChange {
  public:
   struct Settings {
@@ -69,7 +69,7 @@ struct RunTiming {
   // kUsage for what is no time, for one that needs --virtual-time, and with --record: a recording
   // knows nothing of such times.
   static base::Result<RunTiming> read(const tools::Options& options);
-  // Of all that says how long something lasts.
+  // Is there anything that says how long something lasts?
   bool any() const { return !durations.empty() || safe_point_ns != 0 || change.has_value(); }
   // kNoSuchTask.
   base::Status check_tasks(const ir::Image& image) const;

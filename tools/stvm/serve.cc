@@ -182,7 +182,7 @@ void print_ready(ServedResource& resource) {
   std::fflush(stdout);
 }
 
-// This thread is the control thread.
+// Runs on the control thread, which is the calling one.
 base::Status run_one(ServedResource& resource, const vm::RealTimeOptions& real_time,
                      ServiceNotify& notify) {
   // After all other threads, which stay as they are.

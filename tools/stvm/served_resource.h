@@ -35,7 +35,7 @@ class ServedResource {
 
   // The controller with its first scan's state, its service and its socket.
   base::Status start(const ResourceController::Settings& settings, vm::Clock& clock);
-  // Of the calling thread, after start(): it will be the control thread.
+  // Makes the calling thread real-time, after start(): it will be the control thread.
   base::Status make_real_time(const vm::RealTimeOptions& options);
   // Until `stop` says so, or somebody asks this resource to; `alive` in each cycle and while it
   // waits. Then instances leave and outputs are safe.

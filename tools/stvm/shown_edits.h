@@ -1,4 +1,4 @@
-// Of what a change edits: as much as fits into one message. `stc diff` shows all of it.
+// ShownEdits: what a change edits, as much as fits into one message. `stc diff` shows all of it.
 #pragma once
 
 #include "ir/bytecode/verify.h"

@@ -242,7 +242,7 @@ void print_status_json(const vm::StatusReport& report) {
   std::fputs(json.finish().c_str(), stdout);
 }
 
-// Of the version that ran when it began.
+// The units of the version that ran when the command began.
 base::Result<std::vector<UnitView>> look_at_units(const std::vector<std::string>& patterns,
                                                   ControllerClient& client) {
   base::Result<std::vector<UnitRow>> rows = client.units();

@@ -32,7 +32,7 @@ base::Status ask_to_stop(const tools::Options& options) {
   return base::Ok{};
 }
 
-// Its folder is free when it has gone.
+// The controller's folder is free when it has gone.
 base::Status wait_until_gone(const std::string& directory) {
   constexpr auto kPatience = std::chrono::seconds(10);
   auto give_up = std::chrono::steady_clock::now() + kPatience;

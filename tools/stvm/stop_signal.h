@@ -12,7 +12,8 @@ class StopSignal {
   // can be caught in order stops it; those that would halt it in the middle of a plant's work
   // (SIGTSTP, SIGTTIN, SIGTTOU) are ignored.
   static void install_for_outputs();
-  // That, but for a service, whom no terminal may end: SIGHUP is only noted, SIGPIPE ignored.
+  // Installs handlers for a service, whom no terminal may end: SIGHUP is only noted, SIGPIPE
+  // ignored.
   static void install_service();
   static bool received();
   // SIGHUP has come since the last call.

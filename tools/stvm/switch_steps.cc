@@ -93,7 +93,7 @@ void print_json(const Outcome& outcome, bool all) {
   std::fputs(json.finish().c_str(), stdout);
 }
 
-// Of stc.toml, where the command line says nothing else.
+// The settings of stc.toml, where the command line says nothing else.
 base::Result<tools::ChangeSettings> settings_of(const tools::Options& options,
                                                 const std::vector<std::string>& paths) {
   base::Result<tools::ChangeSettings> settings = tools::change_settings(paths);
@@ -157,8 +157,8 @@ base::Status check_no_trial(const vm::StatusReport& status) {
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package) {
-  base::Status staged = client.stage(package, options.stage_flags, options.unless,
-                                            options.note, options.taken_out);
+  base::Status staged =
+      client.stage(package, options.stage_flags, options.unless, options.note, options.taken_out);
   if (!staged.ok()) return staged.error();
   return bring_staged(options, client);
 }

@@ -22,14 +22,14 @@ struct SwitchOptions {
   std::string note;           // what the journal says of it (E-33)
   std::string taken_out;      // the edit whose work it takes back
   bool dry_run = false;
-  bool all = false;  // a line for each variable
+  bool all = false;   // a line for each variable
   bool wait = false;  // for the changes of others
   bool ask = true;
   bool json = false;
   // Asked instead of the question, where somebody asks in another way.
   std::function<base::Status()> confirm = {};
 };
-// Of the options of `stvm change`.
+// Reads the options of `stvm change`.
 base::Result<SwitchOptions> switch_options(const tools::Options& options);
 // Where the project of other paths says what the command line does not.
 base::Result<SwitchOptions> switch_options(const tools::Options& options,
@@ -52,7 +52,7 @@ base::Status check_no_trial(const vm::StatusReport& status);
 // Prints the fates on the way, unless that is JSON's. What is not switched is cancelled.
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package);
-// The same of what is staged already.
+// Switches to what is staged already.
 base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClient& client);
 void print(const SwitchOptions& options, const Outcome& outcome);
 

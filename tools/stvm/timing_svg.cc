@@ -45,7 +45,7 @@ class Picture {
         "class=\"%s\"/>\n",
         x(span.from_ns), top, std::max(x(span.to_ns) - x(span.from_ns), 0.8), height, color, style);
   }
-  // Of one task alone.
+  // The line of an exchange of one task alone.
   void own_line(int64_t at_ns, double top, double bottom, const char* color) {
     out += format("<path d=\"M%.2f %.1fV%.1f\" stroke=\"%s\" stroke-dasharray=\"2 2\"/>\n",
                   x(at_ns), top, bottom, color);

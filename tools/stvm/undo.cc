@@ -86,7 +86,7 @@ std::string list_text(const Names& names) {
   return out;
 }
 
-// Some of those that go were not named: they were made on top of one that is.
+// Do some edits go that were not named? They were made on top of one that is.
 bool more_go(const Names& going, const Names& named) {
   return going.size() > std::max<size_t>(named.size(), 1);
 }

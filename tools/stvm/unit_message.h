@@ -30,7 +30,7 @@ struct UnitRow {
   OtherSlot other = OtherSlot::kEmpty;
   base::Digest other_unit{};     // its first bytes, zeros after them
   base::Digest other_version{};  // of the image that it was written for; likewise
-  // It runs in this slot since then; `event`: "started", "switched", "undone".
+  // The cycle since which it runs in this slot; `event`: "started", "switched", "undone".
   uint64_t cycle = 0;
   int64_t time_ns = 0;
   std::string who;

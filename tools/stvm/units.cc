@@ -23,7 +23,7 @@ const char* pou_kind_text(ir::PouKind kind) {
   return kNames[static_cast<size_t>(kind)];
 }
 
-// Of a kind in a table: "FB".
+// The short form of a kind in a table: "FB".
 std::string short_kind(const std::string& kind) {
   if (kind == "function block") return "FB";
   return kind == "function" ? "FUN" : kind == "program" ? "PRG" : kind == "method" ? "MET" : "";

@@ -6,7 +6,8 @@
 
 namespace stvm {
 
-// Others were faster, or are not done: what has to be made anew of what runs then.
+// Does the error say that others were faster, or are not done? Then the change has to be made anew
+// from what runs.
 bool others_change(const base::Error& error);
 // Why it was not done; null: it was.
 const base::Error* why_not(const base::Result<Outcome>& outcome);

@@ -34,7 +34,7 @@ struct TrapText {
   std::string text;  // "array index outside its bounds: Speeds[12], bounds 0..9"
 };
 TrapText describe(const ir::Image& image, const Trap& trap);
-// Of the source; 0: unknown.
+// The line of the source; 0: unknown.
 uint32_t line_of(const ir::LinkedPou& pou, uint32_t unit);
 
 struct CallRecord {
@@ -78,7 +78,7 @@ class Execution {
              int64_t task_time_ns) {
     start(generation, *generation.code(), memory, id, stack, task_time_ns);
   }
-  // The same with other code of that generation, which outlives the execution.
+  // Starts with other code of that generation, which outlives the execution.
   void start(const Generation& generation, const CodeTable& code, uint8_t* memory, uint32_t id,
              uint32_t stack, int64_t task_time_ns);
   // Prepares a call of a function, which finds its inputs in its frame at `frame`, and leaves what

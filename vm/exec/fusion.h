@@ -49,10 +49,10 @@ struct Fusion {
   uint8_t length = 0;
   uint16_t handler = 0;
 };
-// Of fusions.def, by their keys.
+// The rows of fusions.def, by their keys.
 std::span<const Fusion> fusions();
 
-// Of an opcode as a step.
+// What is known of an opcode as a step.
 struct StepFacts {
   bool is_step = false;
   bool stores = false;  // elsewhere than in its operand a
@@ -98,7 +98,7 @@ class StepWalk {
   StepWalk(const StepLine& line, uint32_t unit) : line_(line), next_(unit) {}
   // The next one's key; false: there is none.
   bool take(StepKey& key);
-  // Its handler alone, which is found at once; false: as take().
+  // Takes the handler of the next step alone, which is found at once; false: as take().
   bool next_handler(uint32_t& handler) const {
     if (is_over_ || length_ == kMaxSteps || next_ >= line_.size()) return false;
     if (!line_[next_].is_step) return false;
@@ -138,7 +138,7 @@ class FusionTree {
   const Node* first_step(uint32_t handler) const {
     return first_[handler] == 0 ? nullptr : &nodes_[first_[handler]];
   }
-  // Of the step that stands next in `walk`, which it takes; null: no row goes on so.
+  // The node of the step that stands next in `walk`, which it takes; null: no row goes on so.
   const Node* next_step(const Node& node, StepWalk& walk) const;
 
  private:

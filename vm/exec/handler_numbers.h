@@ -43,10 +43,10 @@ inline constexpr uint32_t kHandlerCount = kFirstHandler[ir::kOpcodeCount];
 // end of what a helper does.
 inline constexpr uint32_t kResumeHandler = kHandlerCount;
 inline constexpr uint32_t kStopHandler = kHandlerCount + 1;
-// Of versions of POUs while variables are forced (store_aside.h).
+// The handler of versions of POUs while variables are forced (store_aside.h).
 inline constexpr uint32_t kAsideHandler = kHandlerCount + 2;
 inline constexpr uint32_t kRestoreHandler = kHandlerCount + 3;
-// Of boolean logic (truth_tables.h).
+// The handler of boolean logic (truth_tables.h).
 inline constexpr uint32_t kTruthTables = kHandlerCount + 4;
 // Fused handlers (fusion.h) come after these.
 inline constexpr uint32_t kFirstFused = kHandlerCount + 5;

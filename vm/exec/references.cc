@@ -40,7 +40,8 @@ const Exposure* exposure_of(const Context& ctx, uint32_t segment) {
   return found == end ? nullptr : found;
 }
 
-// Of the variable in the frame of `pou` that covers `offset`; nullptr when none can be exposed.
+// The slot of the variable in the frame of `pou` that covers `offset`; nullptr when none can be
+// exposed.
 const ir::FrameSlot* slot_at(const ir::Image& image, uint32_t pou, uint32_t offset,
                              uint32_t& size) {
   const std::vector<ir::FrameSlot>& slots = image.pous[pou].slots;
@@ -112,7 +113,7 @@ const AreaEntry* area_of(const Context& ctx, uint32_t segment) {
   return id < areas.size() && areas[id].segment == segment ? &areas[id] : nullptr;
 }
 
-// Of a handle that is inside of its variable; null: it is not, or names no area.
+// The area of a handle that is inside of its variable; null: it is not, or names no area.
 const AreaEntry* area_inside(const Context& ctx, uint64_t handle) {
   return area_of(ctx, static_cast<uint32_t>(handle >> 32));
 }

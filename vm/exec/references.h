@@ -40,8 +40,8 @@ struct VirtualCallee {
 };
 VirtualCallee find_target(const Context* ctx, uint64_t handle, uint32_t prototype);
 
-// Of data offset `address`, which may lie in a frame of this execution: then the local there is
-// exposed. nullopt: there is no room for one more.
+// The handle of data offset `address`, which may lie in a frame of this execution: then the local
+// there is exposed. nullopt: there is no room for one more.
 std::optional<uint64_t> handle_of(Context& ctx, uint32_t frame, uint32_t address);
 uint32_t flat_of(const Context& ctx, uint64_t handle);
 uint64_t unflat(const Context& ctx, uint32_t address);

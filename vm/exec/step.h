@@ -96,7 +96,7 @@ struct Operands {
   STC_INLINE_MEMBER T c() const {
     return read<C, T>(m.pc->c);
   }
-  // Of fields that are a base only, or reach far.
+  // Places of fields that are a base only, or reach far.
   STC_INLINE_MEMBER uint8_t* place_b(uint32_t offset) const { return place<B>(offset); }
   STC_INLINE_MEMBER uint32_t address_b(uint32_t offset) const { return address<B>(offset); }
   STC_INLINE_MEMBER uint32_t address_c(uint32_t offset) const { return address<C>(offset); }

@@ -24,7 +24,7 @@ class CsvInputs {
   const std::vector<ir::DirectAddress>& columns() const { return columns_; }
   // Plays on to `now_ns`, which never goes back.
   void advance(int64_t now_ns);
-  // Of a column, as the last rows say; little endian bits.
+  // The value of a column, as the last rows say; little endian bits.
   uint64_t value(size_t column) const { return values_[column]; }
   bool lost() const { return lost_; }
 

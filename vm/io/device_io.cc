@@ -13,7 +13,7 @@
 namespace vm {
 namespace {
 
-// The same connection: only the map may differ.
+// Do both use the same connection? Only the map may differ then.
 bool same_line(const ir::Device& a, const ir::Device& b) {
   return a.name == b.name && a.driver == b.driver && a.settings == b.settings;
 }
@@ -149,8 +149,8 @@ base::Result<ExchangePort*> DeviceIo::port_for(const ir::Device& device) {
                        "device `" + device.name + "`: " + driver.error().text};
   }
   ports_.push_back(std::make_unique<ExchangePort>(device, std::move(*driver),
-                                                  options_.virtual_clock == nullptr,
-                                                  options_.log, options_.confined));
+                                                  options_.virtual_clock == nullptr, options_.log,
+                                                  options_.confined));
   return ports_.back().get();
 }
 

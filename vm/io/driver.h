@@ -64,7 +64,7 @@ class IoDriver {
   virtual void disconnect() {}
 };
 
-// Of a checked device. kNoDriver, kDeviceFailed.
+// Makes the driver of a checked device. kNoDriver, kDeviceFailed.
 using DriverFactory =
     std::function<base::Result<std::unique_ptr<IoDriver>>(const ir::Device& device)>;
 

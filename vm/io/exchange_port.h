@@ -70,7 +70,7 @@ class ExchangePort {
   // Has the last exchange failed? One that does not end has not.
   bool failed() const;
   void exchange_now(int64_t now_ns);
-  // Of a port with a thread: the time since some instant, without a system call.
+  // The clock of a port with a thread: the time since some instant, without a system call.
   static int64_t now_ns();
 
  private:

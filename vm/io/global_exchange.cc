@@ -77,7 +77,7 @@ struct GlobalExchange::Member {
   Network::Editions editions;
   std::atomic<uint32_t> running{0};  // number of its edition
   std::atomic<uint64_t> section{0};  // odd: its control thread uses the network
-  // Of its control thread.
+  // How many blocks its control thread has published.
   uint64_t published = 0;
   std::vector<uint64_t> newest;  // number of the block taken last, by writer
   // For status().

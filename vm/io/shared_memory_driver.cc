@@ -54,7 +54,8 @@ class SharedMemoryDriver : public IoDriver {
   }
 
  private:
-  // It may be there already, from a controller before this one: what the others have opened stays.
+  // The object may be there already, from a controller before this one: what the others have opened
+  // stays.
   base::Status open() {
     base::Status done = object_.open();
     if (done.ok()) done = object_.read(kOutputsAt, bytes_of(sequence_));
@@ -171,9 +172,9 @@ base::Result<std::unique_ptr<IoDriver>> make_shared_memory_driver(const ir::Devi
     return base::Error{base::Refusal::kDeviceFailed,
                        "`" + name + "` is no name of shared memory: /press"};
   }
-  return std::unique_ptr<IoDriver>(std::make_unique<SharedMemoryDriver>(
-      name, mode_of(ir::setting(device, "access")),
-      ir::number_setting(device, "timeout_ms") * 1'000'000));
+  return std::unique_ptr<IoDriver>(
+      std::make_unique<SharedMemoryDriver>(name, mode_of(ir::setting(device, "access")),
+                                           ir::number_setting(device, "timeout_ms") * 1'000'000));
 }
 
 }  // namespace vm

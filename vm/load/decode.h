@@ -10,7 +10,7 @@
 
 namespace vm {
 
-// Of one image, which is verified and borrowed.
+// Decodes one image, which is verified and borrowed.
 class Decoder {
  public:
   // Do its BOOLs stay clean (ir/bytecode/bools.h)?
@@ -21,7 +21,7 @@ class Decoder {
   // Verified units of `pou`, of that image. What follows them in `decoded` is theirs, too.
   void run(const ir::LinkedPou& pou, std::span<const ir::Unit> units,
            std::vector<ir::Unit>& decoded) const;
-  // The same, and each instruction has a handler of its own.
+  // Decodes so that each instruction has a handler of its own.
   void run_unfused(std::span<const ir::Unit> units, std::vector<ir::Unit>& decoded) const;
 
  private:

@@ -52,7 +52,7 @@ struct CodeTable {
   CodeNumber number = {};                         // what an execution remembers
 };
 
-// Of a generation, whose machine code may be made beside it, and when it has ended.
+// The newest code of a generation, whose machine code may be made beside it, and after its end.
 struct NewestCode {
   std::shared_ptr<const CodeTable> first;
   std::shared_ptr<const CodeTable> with_native;  // made beside
@@ -83,7 +83,7 @@ struct AreaEntry {
   uint32_t reach_count = 0;
 };
 
-// Of Image::bounds and Image::ranges, without their names.
+// An entry of Image::bounds and Image::ranges, without their names.
 struct BoundEntry {
   int64_t low = 0;
   uint64_t count = 0;
@@ -137,7 +137,7 @@ class Generation {
   uint32_t pool_offset() const;
   // The constant pool to its place in data memory.
   void write_pool(uint8_t* memory) const;
-  // Of its image as it is; what is newest of it. Any thread. It can be held longer than the
+  // The code of its image as it is: the newest there is. Any thread. It can be held longer than the
   // generation.
   const std::shared_ptr<const CodeTable>& code() const {
     return *code_->newest.load(std::memory_order_acquire);

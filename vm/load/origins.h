@@ -37,7 +37,7 @@ class OriginWalk {
   // To be told of every unit: enter() before anything is asked about it, pass() after that.
   void enter(uint32_t unit);
   void pass(uint32_t unit);
-  // Of the address or string in that slot of the own frame, or of the next one.
+  // The origins of the address or string in that slot of the own frame, or of the next one.
   Origins of(uint32_t slot) const;
   // What the slot of the own frame points to; an invalid type: a string.
   ir::Region region(uint32_t slot) const;

@@ -34,7 +34,7 @@ bool is_logic(Opcode op) {
   }
 }
 
-// Of 64 cases at once.
+// The result of 64 cases at once.
 uint64_t apply(Opcode op, uint64_t a, uint64_t b, uint64_t c) {
   switch (op) {
     case Opcode::AND_B:
@@ -226,7 +226,7 @@ void Maker::write(Place place, uint32_t term) {
   rows_.push_back(row);
 }
 
-// Of what `in` is made of, that which follows from most places is written, and read from there
+// Among what `in` is made of, that which follows from most places is written, and read from there
 // from now on. Only waiting values are made of anything.
 bool Maker::write_largest(std::array<uint32_t, 3>& in) {
   const auto size = [this](uint32_t term) {

@@ -212,7 +212,7 @@ void Search::reference(const Origins& origins, ir::Region region) {
   }
 }
 
-// Of a variable: it leads to what that holds. Of the own instance: to all of it.
+// A reference to a variable leads to what that holds; one to the own instance leads to all of it.
 void Search::reference_place(ir::Base base, uint64_t begin) {
   const bool whole = base == ir::Base::kSelf && begin == 0;
   for_each_in(base, 0, kAll, [&](uint32_t i, uint64_t area, uint64_t, bool) {

@@ -26,7 +26,7 @@ struct Writer {
   How how = How::kOnly;
 };
 
-// Of writers with kAddress those in so many POUs.
+// Writers with kAddress are named in so many POUs.
 inline constexpr size_t kMostAddressPous = 100;
 // Sorted by variable, POU and unit.
 std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables);

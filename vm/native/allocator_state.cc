@@ -26,7 +26,7 @@ void Allocator::add_live(Val v) {
   live_.push_back(v);
 }
 
-// It is used no more: its register is free, and its spill slot when no other way uses it.
+// The value is used no more: its register is free, and its spill slot when no other way uses it.
 void Allocator::remove_live(Val v) {
   free_register(v);
   if (uses_.next(v) == kNone) {

@@ -155,7 +155,7 @@ class Builder {
   NumberTable constants_[8];        // by bits; of 4 or 8 bytes floating, integers
 };
 
-// Of operations that give the same, `version` of memory being the same.
+// The hash is equal for operations that give the same value while `version` of memory is the same.
 uint64_t hash_of(const Node& node, uint32_t version);
 bool same(const Node& a, const Node& b);
 

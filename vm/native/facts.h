@@ -171,7 +171,7 @@ class Facts {
   void killed(uint32_t unit, std::vector<uint32_t>& out) const;
   // Variables whose memory the unit may read through an address.
   void seen(uint32_t unit, std::vector<uint32_t>& out) const;
-  // Of a COPY: may its two places have bytes in common?
+  // May the two places of a COPY two places have bytes in common?
   bool may_overlap(uint32_t unit) const;
   uint32_t copied_bytes(uint32_t unit) const;
   // Does it change memory that no variable names?
@@ -197,7 +197,7 @@ class Facts {
   const std::vector<uint32_t>& results() const { return results_; }
   // The POU that the unit calls; kNone: it depends.
   uint32_t callee(uint32_t unit) const;
-  // Of the own instance's slot at `offset`; null: they may lie anywhere.
+  // The children of the own instance's slot at `offset`; null: they may lie anywhere.
   const Children* children(uint64_t offset) const;
   bool recursive_bodies() const { return common_->recursive_bodies; }
   bool clean_bools() const { return common_->clean_bools; }

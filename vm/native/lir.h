@@ -109,7 +109,7 @@ enum class Cond : uint8_t {
 };
 Cond negated(Cond cond);
 Cond swapped(Cond cond);  // for exchanged operands
-// Of the low `width` bytes, with zeros above.
+// Compares the low `width` bytes, with zeros above.
 bool holds(Cond cond, uint64_t a, uint64_t b, uint8_t width);
 
 // kPointer: a machine address, of an instance whose code is inlined or of a part of a sum in a loop
@@ -162,7 +162,8 @@ struct SlotValue {
   uint8_t width = 0;
   Val value = kNone;
   MemBase base = MemBase::kFrame;
-  // It is the data address of `address`, which is made where it is stored; `value` is the index.
+  // The place is the data address of `address`, which is made where it is stored; `value` is the
+  // index.
   bool is_address = false;
   Mem address = {};
 };

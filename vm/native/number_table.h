@@ -30,7 +30,7 @@ class NumberTable {
     slot.number = number;
     return before;
   }
-  // Its number; `fresh` becomes that of a key without one.
+  // The number of the key; `fresh` becomes that of a key without one.
   uint32_t add(uint64_t key, uint32_t fresh) {
     Slot& slot = at(key);
     if (slot.number == kNone) slot.number = fresh;

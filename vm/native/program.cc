@@ -209,7 +209,7 @@ struct Job {
   const ir::Image* running_image = nullptr;
 };
 
-// Of all POUs; what is the same as it was is taken from what runs.
+// The digests of the facts of all POUs; what is the same as it was is taken from what runs.
 std::vector<base::Digest> facts_of_all(const Job& job, const ImageFacts& common,
                                        std::vector<uint64_t>& scratch) {
   std::vector<base::Digest> facts;

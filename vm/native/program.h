@@ -26,11 +26,11 @@ struct PouNative;
 // Has this machine a native tier?
 bool is_available();
 
-// Of a Program that is made while others look.
+// How far a Program is that is made while others look.
 struct Progress {
-  std::atomic<bool> stop = false;  // no more POUs: those that are not done are interpreted
+  std::atomic<bool> stop = false;      // no more POUs: those that are not done are interpreted
   std::atomic<bool> unwanted = false;  // with `stop`: nor what is done
-  std::atomic<uint32_t> pous = 0;  // are done
+  std::atomic<uint32_t> pous = 0;      // are done
   std::shared_ptr<const CodeTable> stopped;  // what had been made by then, for another one to share
 };
 
@@ -64,7 +64,7 @@ class Program {
   // The POU's own unit that a side unit stands for.
   const ir::Unit* real_unit(uint32_t pou, const ir::Unit* unit) const;
 
-  // Of all memory that its POUs' code lies in, with what earlier versions have there.
+  // The size of all memory that its POUs' code lies in, with what earlier versions have there.
   uint64_t code_bytes() const { return code_bytes_; }
   uint32_t native_pous() const;
   // Why the POU is interpreted; "" when it is not.

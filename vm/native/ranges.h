@@ -17,7 +17,7 @@ struct Range {
 };
 Range whole(uint8_t width);  // of a signed number
 int64_t as_signed(uint64_t bits, uint8_t width);
-// Of the bytes of a number, all bits.
+// All bits of a number of `width` bytes.
 constexpr uint64_t mask(uint8_t width) {
   return width == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * width)) - 1;
 }

@@ -208,7 +208,7 @@ void Facts::touched(const Reach& reach, std::vector<uint32_t>& out) const {
   const auto first = static_cast<ptrdiff_t>(out.size());
   for (const Reach::Part& part : reach.parts) {
     const MemBase base = base_of(part.base);
-    // None is wider than the widest scalar.
+    // No part is wider than the widest scalar.
     const uint64_t begin = part.begin < kWidest ? 0 : part.begin - kWidest + 1;
     auto v = std::lower_bound(by_place_.begin(), by_place_.end(), std::pair(base, begin),
                               [this](uint32_t a, const std::pair<MemBase, uint64_t>& place) {

@@ -130,7 +130,7 @@ void Uses::find_live(const std::vector<Use>& uses, const std::vector<uint32_t>& 
       found.push_back({b, v});
       ++first_live_[b + 1];
       for (uint32_t at = first_pred[b]; at < first_pred[b + 1]; ++at) {
-        // Its own block defines it, as a parameter or after its beginning.
+        // The value's own block defines it, as a parameter or after its beginning.
         if (f.values[v].block != preds[at]) work.push_back(preds[at]);
       }
     }

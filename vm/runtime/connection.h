@@ -41,7 +41,7 @@ struct Connection {
   short wanted_events() const;
   // One round, with what poll() said; false ends it.
   bool attend(short events, Service& service, Instant now);
-  // The same in the middle of another one's answer: what is not urgent is held.
+  // Attends in the middle of another one's answer: what is not urgent is held.
   void attend_urgent(Service& service, Instant now);
 
  private:

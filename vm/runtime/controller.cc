@@ -36,7 +36,7 @@ struct Controller::Impl {
   TierOptions tier;
   std::shared_ptr<CodeSlots> code_slots;
   std::unique_ptr<Generation> running;
-  // Of the running generation, and of one that is prepared or can come back by undo.
+  // The tables of the running generation, and of one that is prepared or can come back by undo.
   std::map<const Generation*, std::unique_ptr<TaskTables>> tables;
   NativeMaker native_maker;  // ends before the generation that it works on
 };
@@ -241,7 +241,7 @@ uint32_t Controller::pous_to_make() const { return impl_->native_maker.to_make()
 
 base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
   const Generation* running = impl_->running.get();
-  // It would read code slots that are written now.
+  // The maker of machine code would read code slots that are written now.
   if (!impl_->native_maker.is_for(*running)) {
     impl_->native_maker.stop();
     (void)impl_->native_maker.take_stopped();

@@ -135,7 +135,8 @@ class Controller {
   const ir::Image& image() const;
   const ir::VerifiedImage& verified() const;
   const Generation& generation() const;
-  // That scans begin with: another one than its own while something is forced. At a boundary.
+  // The code table that scans begin with: another one than the generation's own while something is
+  // forced. At a boundary.
   const CodeTable& code() const;
   // Making::kBeside: machine code of so many POUs is still to be made by a thread in the
   // background; until then all are interpreted. Any thread.
@@ -211,9 +212,9 @@ class Controller {
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
   // longer than `limit_ns`, the rest is left out and the old program can run on after construct().
   base::Status leave(const std::vector<uint32_t>& ids, int64_t limit_ns);
-  // After it, when all values are as before: outputs are, too.
+  // After a leave() whose values were put back: outputs are as before, too.
   void values_put_back();
-  // The same of all there are, and their outputs are sent: nothing runs after it.
+  // Lets all instances leave, and their outputs are sent: nothing runs after it.
   base::Status leave_all(int64_t limit_ns);
 
   // The last thing before a controller ends, also in the middle of a scan. What would be held for

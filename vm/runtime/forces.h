@@ -42,7 +42,7 @@ struct ForcedSet {
   // Finds out how `forces` hold on variables of the image, and makes the code.
   static ForcedSet make(const ir::VerifiedImage& image, const CodeTable& own,
                         std::vector<Force> forces, const TierOptions& tier);
-  // Of forces of another image by path; what has no place of its kind here ends.
+  // Adopts forces of another image by path; what has no place of its kind here ends.
   static ForcedSet adopt(const ir::VerifiedImage& image, const CodeTable& own,
                          const ir::Image& from, const std::vector<Force>& forces,
                          const TierOptions& tier);

@@ -20,7 +20,7 @@ class Histogram {
   int64_t total() const { return sum_; }  // stays at the largest number there is
   // The time that `share` (0..1) of all do not exceed: the end of its class, at most max().
   int64_t quantile(double share) const;
-  // Of class `number`: how many there are, and the first time that belongs to the next one.
+  // For class `number`: how many there are, and the first time that belongs to the next one.
   uint64_t in_class(uint32_t number) const { return classes_[number]; }
   static int64_t class_end(uint32_t number);
 

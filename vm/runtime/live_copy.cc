@@ -70,7 +70,7 @@ base::Result<LiveCopy> LiveCopy::prepare(const Controller& controller,
   out.left_ = line_bytes(out.ranges_);
   out.whole_ = out.left_ <= kMaxBoundaryBytes;
   merge(out.ranges_);
-  // Its pages are there before the boundary.
+  // The pages of the copy are there before the boundary.
   for (const ir::DataRange& range : out.ranges_) {
     std::memset(out.memory_.data() + range.data, 0, range.size);
   }

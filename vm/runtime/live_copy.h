@@ -41,7 +41,7 @@ enum class Copied : uint8_t { kPart, kLater, kAll, kOtherProgram };
 
 class LiveCopy {
  public:
-  // Of the program that runs now; `ranges` lie in its data memory. kTooLarge.
+  // A copy of the program that runs now; `ranges` lie in its data memory. kTooLarge.
   static base::Result<LiveCopy> prepare(const Controller& controller,
                                         std::vector<ir::DataRange> ranges);
   // At a boundary. kOtherProgram: another version runs than when this was prepared.
@@ -49,7 +49,7 @@ class LiveCopy {
 
   // The ranges, where they lie in data memory; anything else is zero.
   std::span<const uint8_t> memory() const { return memory_.view(); }
-  // Of the boundaries at which the first and the last of it was copied.
+  // The cycles of the boundaries at which the first and the last of it was copied.
   uint64_t first_cycle() const { return first_cycle_; }
   uint64_t last_cycle() const { return last_cycle_; }
 
@@ -81,7 +81,7 @@ TaskTimes times_of(const TaskSample& sample);
 
 class TaskCopy {
  public:
-  // Of all tasks, or of the one of that name; none when there is no such task.
+  // A copy of all tasks, or of the one of that name; none when there is no such task.
   TaskCopy(const Controller& controller, std::string_view name);
   // At a boundary, as LiveCopy.
   Copied take(Controller& controller, int64_t free_ns);

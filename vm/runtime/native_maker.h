@@ -24,7 +24,8 @@ class NativeMaker {
     stop();
   }
 
-  // Of this generation from now on, and of no other one; once for each. `like`: Generation.
+  // Makes code of this generation from now on, and of no other one; once for each. `like`:
+  // Generation.
   void start(const Generation& of, const TierOptions& tier, std::optional<MadeCode> like = {});
   // What is not made yet is not made; waits for the POU that is being made.
   void stop();

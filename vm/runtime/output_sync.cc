@@ -27,7 +27,9 @@ void clear(std::span<uint8_t> mask) { std::fill(mask.begin(), mask.end(), uint8_
 
 OutputSync::OutputSync(IoBuffer strategy, size_t bytes)
     : strategy_(strategy),
-      count_(has_one_buffer(strategy) ? 1 : strategy == IoBuffer::kThree ? 3 : 2),
+      count_(has_one_buffer(strategy)       ? 1
+             : strategy == IoBuffer::kThree ? 3
+                                            : 2),
       bytes_(bytes),
       storage_(2 * count_ * bytes) {}
 
@@ -38,7 +40,7 @@ void OutputSync::keep(OutputSync& old) {
   }
 }
 
-// Of kCopied the writer has the variables, which are number 0.
+// With kCopied the writer has the variables, which are number 0.
 BufferState OutputSync::state(bool fresh, bool locked) const {
   const uint8_t waiting = strategy_ == IoBuffer::kThree ? wait_ : BufferState::kNone;
   const uint8_t reader = strategy_ == IoBuffer::kLocked ? write_ : read_;
@@ -81,8 +83,8 @@ void OutputSync::take(std::span<uint8_t> outputs, std::span<uint8_t> taken) {
   if (strategy_ == IoBuffer::kFirstUnseen) take_newest(outputs);
 }
 
-// It waits for the next transmission. Changed back to what has been sent, a bit is nothing new, and
-// must not stand before what is.
+// The buffer waits for the next transmission. Changed back to what has been sent, a bit is nothing
+// new, and must not stand before what is.
 void OutputSync::take_newest(std::span<const uint8_t> sent) {
   const std::span<uint8_t> bits = mask(write_);
   const std::span<const uint8_t> newest = values(write_);

@@ -30,7 +30,7 @@ class OutputSync {
   // Does anything wait for a later transmission? Its bits are set in `waiting`.
   bool waits();
   void mark(std::span<uint8_t> waiting);
-  // Those bits of that byte have been written from outside.
+  // Tells that those bits of that byte have been written from outside.
   void forget(size_t byte, uint8_t bits);
   void restart();
 
@@ -40,7 +40,7 @@ class OutputSync {
   BufferState state(bool fresh, bool locked) const;
 
  private:
-  // Of a buffer: values, and which bits of them have not been taken.
+  // The parts of a buffer: values, and which bits of them have not been taken.
   std::span<uint8_t> values(uint8_t buffer) { return part(2u * buffer); }
   std::span<uint8_t> mask(uint8_t buffer) { return part(2u * buffer + 1); }
   std::span<uint8_t> part(size_t number) {

@@ -98,7 +98,7 @@ class Storage {
   // The file is there, durably, with room for at least `size` bytes: what it holds stays, new bytes
   // are zero. Before anything else is done with it. After an error it may still be readable.
   virtual base::Status open(std::string_view name, uint64_t size) = 0;
-  // Of a file, opened or not; kFileNotFound.
+  // The size of a file, opened or not; kFileNotFound.
   virtual base::Result<uint64_t> size(std::string_view name) = 0;
   // `size` bytes from `offset` on, fewer where the file ends.
   virtual base::Result<base::Bytes> read(std::string_view name, uint64_t offset, uint64_t size) = 0;

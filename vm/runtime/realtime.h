@@ -17,7 +17,7 @@ struct RealTimeOptions {
   bool confined = false;        // thread_filter.h, after all else
 };
 
-// Of the calling thread; kNotPermitted, kUsage for a processor that is not there.
+// Makes the calling thread real-time; kNotPermitted, kUsage for a processor that is not there.
 base::Status make_real_time(const RealTimeOptions& options);
 // The calling thread gives way to all others.
 void run_in_background();

@@ -51,7 +51,7 @@ class Recorder : public Clock, public IoPort {
   void end_job(const Controller& controller);
   // The jobs since the last call were of this request (protocol.h), and it was carried out.
   void note(base::ByteSpan request);
-  // They were of one that changed nothing.
+  // Forgets the jobs of a request that changed nothing.
   void forget_jobs();
   bool switched() const { return switched_; }
 

@@ -143,7 +143,7 @@ bool Scheduler::lengthens_cycle() {
   return late;
 }
 
-// It counts as a cycle: what is seen at this boundary is not what is seen at the end.
+// The pause counts as a cycle: what is seen at this boundary is not what is seen at the end.
 void Scheduler::pause() {
   paused_ = true;
   ++cycles_;
@@ -156,7 +156,7 @@ void Scheduler::end_cycle() {
   const int64_t longer_ns = looked_ns_ - next_cycle_ns_;
   cycle_start_ns_ += longer_ns;
   next_cycle_ns_ += longer_ns;
-  // Of all tasks: where cycles begin is measured by any of them.
+  // Moves all tasks: where cycles begin is measured by any of them.
   for (TaskSlot& task : tables_->tasks) task.next_release_ns += longer_ns;
 }
 

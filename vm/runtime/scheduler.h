@@ -27,7 +27,7 @@ class Scheduler {
   // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
   // nothing else: false.
   bool run_exits(int64_t limit_ns);
-  // The same for instances that are new, at the time of the next cycle. Only a trap ends them.
+  // Runs inits of instances that are new, at the time of the next cycle. Only a trap ends them.
   bool run_inits();
   // At a boundary, also after a fault: every task runs again, in its phase; none has missed a
   // release until then.

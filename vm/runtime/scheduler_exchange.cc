@@ -8,7 +8,7 @@
 
 namespace vm {
 
-// Its buffer gives what is next to what is sent next.
+// The task's buffer gives what is next to what is sent next.
 void Scheduler::take_outputs(TaskSlot& task) {
   if (!std::exchange(task.held, false)) return;
   base::Bytes& taken = tables_->written;

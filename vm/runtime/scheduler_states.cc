@@ -16,7 +16,7 @@ void Scheduler::become(TaskSlot& task, TaskState state) {
   show(task);
 }
 
-// It has no scan now.
+// The task has no scan now.
 void Scheduler::rest(TaskSlot& task) {
   become(task, task.status.stopped || faulted_ ? TaskState::kStopped
                : task.released                 ? TaskState::kDue

@@ -28,7 +28,7 @@ class SocketPlace {
   SocketAddress without_file() const;
   // The file system takes no new files.
   bool read_only() const;
-  // Of a controller that has ended without removing it.
+  // Removes the file of a controller that has ended without removing it.
   void remove_file() const;
 
  private:

@@ -9,7 +9,7 @@
 namespace vm {
 
 TimeSummary summary_of(const Histogram& times);
-// Those with something in them.
+// The classes with at least one entry.
 std::vector<TimeClass> classes_of(const Histogram& times);
 
 }  // namespace vm

@@ -8,8 +8,8 @@
 namespace vm {
 
 enum class TaskState : uint8_t {
-  kWaiting,    // for its next release
-  kDue,        // released; more urgent ones have the processor
+  kWaiting,  // for its next release
+  kDue,      // released; more urgent ones have the processor
   kRunning,
   kSuspended,  // in the middle of its scan, below more urgent ones
   kEndedLate,  // as kWaiting; a release had found the last scan not done
@@ -18,8 +18,8 @@ enum class TaskState : uint8_t {
 inline constexpr uint32_t kTaskStateCount = 6;
 const char* state_text(TaskState state);
 
-// Of the inputs, the writer is what receives and the reader the scan; of the outputs, the writer is
-// the scan and the reader what sends. Buffers are numbered from 0.
+// For inputs, the writer is what receives and the reader is the scan; for outputs, the writer is
+// the scan and the reader is what sends. Buffers are numbered from 0.
 struct BufferState {
   static constexpr uint8_t kNone = 3;
   ir::IoBuffer kind = ir::IoBuffer::kCopied;

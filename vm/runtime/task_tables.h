@@ -47,11 +47,11 @@ struct TaskSlot {
   bool io_lost = false;         // its next scan begins with a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
   TaskState state = TaskState::kWaiting;
-  bool late = false;    // a release has found it not done
-  bool unsent = false;  // complete outputs of it are in TaskTables::outputs, not sent yet
-  bool held = false;    // complete outputs of it are in its own `outputs`
-  bool lasting = false;     // its code is done, and it lasts until run_ns is scan_ns
-  int64_t scan_ns = 0;      // Clock::scan_ns
+  bool late = false;     // a release has found it not done
+  bool unsent = false;   // complete outputs of it are in TaskTables::outputs, not sent yet
+  bool held = false;     // complete outputs of it are in its own `outputs`
+  bool lasting = false;  // its code is done, and it lasts until run_ns is scan_ns
+  int64_t scan_ns = 0;   // Clock::scan_ns
 
   uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
   bool event_level = false;  // when it was looked at last
@@ -82,7 +82,7 @@ struct TaskTables {
   // The first cycle after `cycle_start_ns`.
   int64_t next_cycle_ns(int64_t cycle_start_ns) const;
   int64_t next_release_ns() const;
-  // Of the version that runs and one that is prepared, or the other way round.
+  // Compares the outputs of the version that runs and one that is prepared, or the other way round.
   static void compare_outputs(TaskTables& a, TaskTables& b);
   // The set and its code come into force, and `set` has what was before. Nothing is freed.
   void exchange_forces(ForcedSet& set);
@@ -98,8 +98,8 @@ struct TaskTables {
   ProcessImage process_image;
   SharedGlobals shared;
   SafeOutputs safe;
-  base::Bytes inputs;        // as received last in a cycle
-  base::Bytes outputs;       // as sent next in a cycle: complete results only (B5)
+  base::Bytes inputs;   // as received last in a cycle
+  base::Bytes outputs;  // as sent next in a cycle: complete results only (B5)
   // Where tasks exchange by themselves (B12), else empty: as received last and as sent last.
   base::Bytes newest_inputs;
   base::Bytes sent_outputs;
@@ -111,7 +111,8 @@ struct TaskTables {
   base::Bytes forced_outputs;  // mask
   // No outputs wait, and none can be NaN: a scan that nobody is suspended below just packs them.
   bool plain_outputs = false;
-  // Of this version and the other one: then what waits is kept, and what is known of its writers.
+  // Are outputs of this version and the other one the same? Then what waits is kept, and what is
+  // known of its writers.
   bool same_outputs = false;
   ForcedSet forced;
   base::Bytes seen_inputs;      // with the forced ones in them

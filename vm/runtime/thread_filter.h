@@ -17,7 +17,7 @@ namespace vm {
 
 enum class ThreadKind : uint8_t { kAny, kControl, kDevice };
 
-// Of the calling thread and of those that it begins from now on, for good; a second filter only
+// Confines the calling thread and those that it begins from now on, for good; a second filter only
 // takes away from the first. kNotPermitted: this kernel or processor has none.
 base::Status confine_thread(ThreadKind kind);
 

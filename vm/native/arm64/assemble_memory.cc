@@ -22,7 +22,7 @@ uint32_t type_of(uint8_t width) { return width == 8 ? 1u << 22 : 0; }
 
 }  // namespace
 
-// The same place in a form that an instruction takes.
+// The address of the same place in a form that an instruction takes.
 Address Assembler::simple(const Address& at, uint8_t width) {
   if (at.index == 0xff) {
     if (is_direct(at.disp, width)) return at;

@@ -100,7 +100,7 @@ class Assembler {
   // Jumps so far get their distances: their labels are bound.
   void patch();
   size_t labels() const { return labels_.size(); }
-  // Of patched code; those from number `first` on are given out anew.
+  // For patched code: labels from number `first` on are given out anew.
   void forget_labels(size_t first) { labels_.resize(first); }
 
   // Short branches reach 1 MiB. What does not is made anew, with long ones (4 GiB).

@@ -167,7 +167,7 @@ void Emitter::call(const Node& n) {
   a_.bind(entries_.behind_call[n.call]);
 }
 
-// Its arguments are in their registers; the data memory comes first.
+// The arguments of the function are in their registers; the data memory comes first.
 void Emitter::native(const Node& n) {
   a_.move(0, kDataRegister);
   a_.move_imm(kScratch, n.imm);

@@ -171,9 +171,9 @@ class Emitter {
   Label leave_ = 0;
 };
 
-// Of integers that are compared.
+// The condition of integers that are compared.
 Condition condition_of(Cond cond);
-// Of FCMP: false for what is no number, but kNe.
+// The condition after FCMP: false for what is no number, but kNe.
 Condition float_condition_of(Cond cond);
 // The constant as a comparison of `width` bytes takes it.
 int64_t compared_constant(uint64_t bits, uint8_t width, Cond cond);

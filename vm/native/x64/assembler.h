@@ -82,7 +82,7 @@ class Assembler {
   // Jumps so far get their distances: their labels are bound.
   void patch();
   size_t labels() const { return labels_.size(); }
-  // Of patched code; those from number `first` on are given out anew.
+  // For patched code: labels from number `first` on are given out anew.
   void forget_labels(size_t first) { labels_.resize(first); }
 
   // Integer instructions work on `width` bytes.
@@ -119,7 +119,7 @@ class Assembler {
   void ret();
   void push(uint8_t reg);
   void pop(uint8_t reg);
-  void trap();  // ud2: is never reached
+  void trap();                              // ud2: is never reached
   void table_entry(Label table, Label to);  // 4 bytes: to - table, which is bound
 
   // Floating point of 4 or 8 bytes.

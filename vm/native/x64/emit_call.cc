@@ -161,7 +161,7 @@ void Emitter::call(const Node& n) {
   a_.bind(entries_.behind_call[n.call]);
 }
 
-// Its arguments are in their registers; the data memory comes first.
+// The arguments of the function are in their registers; the data memory comes first.
 void Emitter::native(const Node& n) {
   a_.address(kRdi, {kDataRegister, 0xff, 1, true, INT32_MIN}, 8);
   a_.move_imm(kRax, n.imm);

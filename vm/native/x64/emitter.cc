@@ -176,7 +176,7 @@ void Emitter::again(Block from, Block head) {
   const bool asks = places.steps.empty() && e.kind == EndKind::kBranch &&
                     e.compare == Op::kCompare && places.edges[0].empty() && places.edges[1].empty();
   if (!asks) return a_.jump(blocks_[head]);
-  // It goes on with the block after it.
+  // Execution goes on with the block after it.
   const bool yes_goes_on = e.target[0] == head + 1;
   if (!yes_goes_on && e.target[1] != head + 1) return a_.jump(blocks_[head]);
   const Block out = e.target[yes_goes_on ? 1 : 0];
