@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tests/golden/runner/modes.h"
+#include "tests/golden/runner/script.h"
 #include "tools/common/files.h"
 
 namespace {
@@ -44,6 +45,46 @@ bool name_fits(const golden::TestFile& test) {
   return (test.name.rfind("fail_", 0) == 0) == expects;
 }
 
+// What expects nothing says nothing: whoever deletes its expectations, or never wrote any, would
+// see it pass for ever.
+bool expects_something(const golden::TestFile& test) {
+  const auto expects = [](const golden::Step& step) { return !step.expected.empty(); };
+  return !test.scans.empty() || std::any_of(test.steps.begin(), test.steps.end(), expects);
+}
+
+// How often `part` stands in the lines.
+size_t times_in(const std::vector<std::string>& lines, const std::string& part) {
+  size_t count = 0;
+  for (const std::string& line : lines) {
+    for (size_t at = line.find(part); at != std::string::npos; at = line.find(part, at + 1)) {
+      ++count;
+    }
+  }
+  return count;
+}
+
+// Names that the script shows and the program does not have. Where that is meant, its author writes
+// it: an update would make a mistyped name an expectation.
+bool names_nothing_new(const golden::TestFile& test, const golden::Actual& actual) {
+  bool good = true;
+  const auto look = [&](const std::vector<std::string>& expected,
+                        const std::vector<std::string>& lines, size_t line) {
+    if (times_in(lines, golden::kNoSuchVariable) <= times_in(expected, golden::kNoSuchVariable)) {
+      return;
+    }
+    std::printf("    line %zu shows a variable that is not there; if that is meant, write `%s`\n",
+                line + 1, golden::kNoSuchVariable);
+    good = false;
+  };
+  for (size_t i = 0; i < test.steps.size(); ++i) {
+    look(test.steps[i].expected, actual.outputs[i], test.steps[i].line);
+  }
+  for (size_t i = 0; i < test.scans.size(); ++i) {
+    look({test.scans[i].expected}, {actual.scans[i]}, test.scans[i].line);
+  }
+  return good;
+}
+
 bool passes(const golden::TestFile& test, const golden::Actual& actual) {
   bool good = actual.failures.empty();
   for (const std::string& failure : actual.failures) std::printf("    %s\n", failure.c_str());
@@ -57,6 +98,10 @@ bool passes(const golden::TestFile& test, const golden::Actual& actual) {
     if (test.scans[i].expected == actual.scans[i]) continue;
     std::printf("    scan %llu:\n", static_cast<unsigned long long>(test.scans[i].scan));
     print_difference({test.scans[i].expected}, {actual.scans[i]});
+    good = false;
+  }
+  if (!expects_something(test)) {
+    std::printf("    no `// CHECK` line: the file expects nothing\n");
     good = false;
   }
   if (!name_fits(test)) {
@@ -73,7 +118,7 @@ bool run_one(const std::string& path, bool update) {
     return false;
   }
   golden::Actual actual = golden::produce(*test);
-  if (update && actual.failures.empty()) {
+  if (update && actual.failures.empty() && names_nothing_new(*test, actual)) {
     std::string text = golden::updated(*test, actual.outputs, actual.scans);
     if (!tools::write_file(path, base::as_bytes(text)).ok()) return false;
     test = golden::read_test(path);

@@ -60,6 +60,7 @@ void produce_check(const TestFile& test, Actual& actual) {
   base::Result<Program> program = compile(test, 0, outcome);
   if (!program.ok() && !outcome.errors) actual.failures.push_back(base::to_string(program.error()));
   actual.outputs[0] = outcome.messages;
+  if (outcome.messages.empty()) actual.outputs[0] = {"nothing is wrong"};
 }
 
 void produce_text(const TestFile& test, Actual& actual) {

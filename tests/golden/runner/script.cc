@@ -23,7 +23,7 @@ class StateTable {
   }
   std::string show(const std::string& name) const {
     auto found = values_.find(folded(name));
-    return name + "=" + (found == values_.end() ? "(no such variable)" : found->second);
+    return name + "=" + (found == values_.end() ? kNoSuchVariable : found->second);
   }
 
  private:

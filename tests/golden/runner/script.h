@@ -6,6 +6,9 @@
 
 namespace golden {
 
+// What `show` and SCAN say of a name that the program does not have.
+inline constexpr const char* kNoSuchVariable = "(no such variable)";
+
 struct Transcript {
   std::vector<std::vector<std::string>> outputs;  // parallel to TestFile::steps
   std::vector<std::string> scans;                 // parallel to TestFile::scans
