@@ -17,6 +17,38 @@ bool Parser::at_member() const {
   return word && is_name(next_kind());
 }
 
+// Does END_TEST come before the next TEST? Looks at each token once.
+bool Parser::test_ends_later() {
+  if (current_ < test_end_) return true;
+  const Token* token = current_;
+  for (; token != last_ && token->kind != TokenKind::kEndTest; ++token) {
+    if (token->kind == TokenKind::kTest && token[1].kind == TokenKind::kString) return false;
+  }
+  if (token == last_) return false;
+  test_end_ = token;
+  return true;
+}
+
+// What belongs outside of the TEST in which it stands: reported, and declared all the same.
+bool Parser::pass_misplaced(const PouDecl& pou) {
+  const bool variables = kind() == TokenKind::kVarGlobal || kind() == TokenKind::kVarConfig;
+  if (pou.kind != PouKind::kTest || (!variables && !at_member())) return false;
+  if (!test_ends_later()) return false;
+  const Range32 attributes = take_attributes();
+  const std::string what = describe(*current_) + " cannot stand inside a TEST";
+  if (variables) {
+    note_only(Code::kWrongSection, current_->span(), what,
+              "write it in front of TEST, or declare variables of the test with VAR");
+    parse_var_block(tree_.globals, attributes);
+  } else {
+    note_only(Code::kMisplacedMember, current_->span(), what,
+              "write it into the block that is tested, or as a FUNCTION in front of TEST");
+    PouDecl dropped;
+    parse_member(dropped, attributes);
+  }
+  return true;
+}
+
 void Parser::parse_member(PouDecl& owner, Range32 attributes) {
   if (kind() == TokenKind::kProperty) return parse_property(owner, attributes);
   PouKind member = kind() == TokenKind::kMethod ? PouKind::kMethod : PouKind::kAction;

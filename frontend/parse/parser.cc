@@ -48,6 +48,7 @@ Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& t
       current_(first_),
       last_(first_ + tokens.tokens.size() - 1),
       var_scan_end_(first_),
+      test_end_(first_),
       tree_(tree),
       diagnostics_(diagnostics) {}
 

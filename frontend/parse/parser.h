@@ -309,6 +309,8 @@ class Parser {
 
   // --- member.cc
   static bool takes_members(PouKind kind);
+  bool test_ends_later();
+  bool pass_misplaced(const PouDecl& pou);
   bool at_member() const;
   void parse_member(PouDecl& owner, Range32 attributes);
   void parse_property(PouDecl& owner, Range32 attributes);
@@ -344,6 +346,7 @@ class Parser {
   const Token* current_;
   const Token* last_;
   const Token* var_scan_end_;  // see end_var_ahead()
+  const Token* test_end_;      // the END_TEST that test_ends_later() has found
   Tree& tree_;
   base::Diagnostics& diagnostics_;
   static constexpr uint32_t kNoOwner = 0xffffffffu;

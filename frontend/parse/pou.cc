@@ -189,8 +189,11 @@ void Parser::parse_pou_variables(PouDecl& pou) {
       // After a POU whose end is missing, VAR_GLOBAL begins something new.
       bool foreign = kind() == TokenKind::kVarConfig ||
                      (kind() == TokenKind::kVarGlobal && pou.kind != PouKind::kProgram);
-      if (foreign) return;
-      parse_var_block(pou.blocks, take_attributes());
+      if (!foreign) {
+        parse_var_block(pou.blocks, take_attributes());
+      } else if (!pass_misplaced(pou)) {
+        return;
+      }
     } else if (!parse_inner(pou)) {
       return;
     }
@@ -233,7 +236,8 @@ void Parser::parse_pou_body(PouDecl& pou) {
       if (drawn && kind() != TokenKind::kSemicolon) report_mixed_body();
       bool first = statement_stack_.size() == mark;
       first&& at_instruction_list() ? InstructionList(*this).body() : parse_statement();
-    } else if (!parse_inner(pou) && !parse_chart_element(pou)) {  // after a stray END_x
+    } else if (!parse_inner(pou) && !parse_chart_element(pou) &&  // after a stray END_x
+               !pass_misplaced(pou)) {
       break;
     }
   }
