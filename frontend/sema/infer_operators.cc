@@ -154,7 +154,7 @@ Note Sema::infer_binary(const Expr& expr) {
       note = widened_by(*this, widened_by(*this, note, expr.operand), expr.right);
       bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
       if (divides && note.type.valid() && right.constant && !left.constant) {
-        check_divisor(*this, expr.right);
+        check_divisor(*this, expr.right, !traits_of(program.types, note.type).real);
       }
       if (divides) note = quotient_width(*this, note, expr, left, right);
       if (divides) check_wrapped(*this, expr.operand, "divided");

@@ -76,9 +76,15 @@ void check_right_operand(Sema& sema, const Expr& expr) {
                                   : "use OR_ELSE");
 }
 
-void check_divisor(Sema& sema, ExprId divisor) {
+void check_divisor(Sema& sema, ExprId divisor, bool whole) {
   const auto value = sema.fold(divisor, {});
   if (!value || value->integer != 0 || value->real != 0) return;
+  // A constant that has a name may be another one some day, and be asked before.
+  if (whole && sema.tree[divisor].kind == ExprKind::kLiteral) {
+    sema.error(DiagnosticCode::kConstantDivision, sema.tree[divisor].span, "the divisor is 0",
+               "divide by something else; this would trap in every scan");
+    return;
+  }
   sema.warning(DiagnosticCode::kZeroDivisor, sema.tree[divisor].span, "the divisor is always 0",
                "divide only where it is not 0: IF n <> 0 THEN ...");
 }

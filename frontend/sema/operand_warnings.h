@@ -1,4 +1,4 @@
-// What operators may do, but is hardly meant: W0002, W0006, W0016, W0084.
+// What operators may do, but is hardly meant: W0002, W0006, W0016, W0084; and E3012.
 #pragma once
 
 #include "frontend/sema/sema.h"
@@ -7,7 +7,8 @@ namespace frontend {
 
 // AND or OR whose right operand can trap, and does not only what the left one has done before.
 void check_right_operand(Sema& sema, const Expr& expr);
-void check_divisor(Sema& sema, ExprId divisor);  // is known
+// The divisor is constant. `whole`: 0 traps. A literal is an error then (E3012).
+void check_divisor(Sema& sema, ExprId divisor, bool whole);
 void check_real_equality(Sema& sema, const Expr& expr);
 // Dialect iec: an operand that was cut to its type before it is `used`: "compared", "widened".
 void check_wrapped(Sema& sema, ExprId operand, std::string_view used);
