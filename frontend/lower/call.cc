@@ -348,21 +348,41 @@ ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId ty
   if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);
   if (callee.kind != Callee::Kind::kStandard) return temporary_place(type);
   std::vector<ExprId> args = sema_.standard_arguments(expr, *callee.row);
+  using stdlib::FunctionRule;
   switch (callee.row->rule) {
-    case stdlib::FunctionRule::kMove:
+    case FunctionRule::kMove:
       return place(args[0]);
-    case stdlib::FunctionRule::kSelect:
-    case stdlib::FunctionRule::kMux:
+    case FunctionRule::kSelect:
+    case FunctionRule::kMux:
       return choose(args, *callee.row, type);
-    case stdlib::FunctionRule::kExtreme:
+    case FunctionRule::kExtreme:
       return extreme_string(args, *callee.row, type);
-    case stdlib::FunctionRule::kString:
+    case FunctionRule::kString:
       return string_function(args, *callee.row, type);
-    default:
-      sema_.error(DiagnosticCode::kNotSupported, expr.span,
-                  std::string(callee.row->name) + " of `" + sema_.type_text(type) + "`");
-      return temporary_place(type);
+    case FunctionRule::kNumberSame:
+    case FunctionRule::kReal:
+    case FunctionRule::kTrunc:
+    case FunctionRule::kArithmetic:
+    case FunctionRule::kShift:
+    case FunctionRule::kBitwise:
+    case FunctionRule::kNot:
+    case FunctionRule::kCompare:
+    case FunctionRule::kStringNumber:
+    case FunctionRule::kClock:
+    case FunctionRule::kTimeSum:
+    case FunctionRule::kTimeDifference:
+    case FunctionRule::kTimeProduct:
+    case FunctionRule::kTimeQuotient:
+    case FunctionRule::kMoment:
+    case FunctionRule::kSplit:
+    case FunctionRule::kWeekday:
+    case FunctionRule::kByteOrder:
+    case FunctionRule::kValid:
+      break;  // scalars
   }
+  sema_.error(DiagnosticCode::kNotSupported, expr.span,
+              std::string(callee.row->name) + " of `" + sema_.type_text(type) + "`");
+  return temporary_place(type);
 }
 
 }  // namespace frontend

@@ -10,16 +10,10 @@ using stdlib::FunctionRule;
 using stdlib::NativeId;
 
 BinaryOp time_operator(FunctionRule rule) {
-  switch (rule) {
-    case FunctionRule::kTimeSum:
-      return BinaryOp::kAdd;
-    case FunctionRule::kTimeDifference:
-      return BinaryOp::kSub;
-    case FunctionRule::kTimeProduct:
-      return BinaryOp::kMul;
-    default:
-      return BinaryOp::kDiv;
-  }
+  return rule == FunctionRule::kTimeSum          ? BinaryOp::kAdd
+         : rule == FunctionRule::kTimeDifference ? BinaryOp::kSub
+         : rule == FunctionRule::kTimeProduct    ? BinaryOp::kMul
+                                                 : BinaryOp::kDiv;
 }
 
 // The parts of a moment, in the order of kMoment and kMomentPart.

@@ -28,9 +28,22 @@ bool has_typed_name(const stdlib::FunctionRow& row, const Traits& traits) {
     case FunctionRule::kMux:
     case FunctionRule::kCompare:
       return true;
-    default:
-      return false;
+    case FunctionRule::kTrunc:
+    case FunctionRule::kString:
+    case FunctionRule::kStringNumber:
+    case FunctionRule::kClock:
+    case FunctionRule::kTimeSum:
+    case FunctionRule::kTimeDifference:
+    case FunctionRule::kTimeProduct:
+    case FunctionRule::kTimeQuotient:
+    case FunctionRule::kMoment:
+    case FunctionRule::kSplit:
+    case FunctionRule::kWeekday:
+    case FunctionRule::kByteOrder:
+    case FunctionRule::kValid:
+      break;  // for operands of one type, or the name has it already
   }
+  return false;
 }
 
 // The arguments that have the type of the name, the others being selectors and counts.

@@ -76,9 +76,10 @@ bool Builder::gives(const FunctionRow& row, TypeRef type) const {
     case FunctionRule::kClock:
       return row.name == "TIME" ? type == elementary(ir::Kind::kTime)
                                 : type == elementary(ir::Kind::kLtime);
-    default:
-      return false;
+    case FunctionRule::kSplit:
+      break;  // has no result
   }
+  return false;
 }
 
 std::vector<Expr> Builder::standard_operands(const FunctionRow& row, TypeRef type, int depth) {
@@ -151,10 +152,19 @@ std::vector<Expr> Builder::standard_operands(const FunctionRow& row, TypeRef typ
       more(elementary(row.name == "IS_VALID" ? (one_in(2) ? ir::Kind::kReal : ir::Kind::kLreal)
                                              : (one_in(2) ? ir::Kind::kByte : ir::Kind::kDword)));
       return out;
-    default:
-      while (out.size() < count) more(type);
-      return out;
+    case FunctionRule::kNumberSame:
+    case FunctionRule::kReal:
+    case FunctionRule::kBitwise:
+    case FunctionRule::kNot:
+    case FunctionRule::kMove:
+    case FunctionRule::kExtreme:
+    case FunctionRule::kClock:
+    case FunctionRule::kByteOrder:
+    case FunctionRule::kSplit:
+      break;
   }
+  while (out.size() < count) more(type);
+  return out;
 }
 
 // Parts that make a date nearly always.
