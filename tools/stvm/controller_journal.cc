@@ -183,7 +183,7 @@ base::Result<base::Bytes> ControllerService::journal(const vm::Request& request)
 }
 
 // From number `offset` on; none after the last.
-base::Result<base::Bytes> ControllerService::events(const vm::Request& request) const {
+base::Result<base::Bytes> ControllerService::events(const vm::Request& request) {
   return events_ == nullptr ? base::Bytes() : events_->page(request.offset, vm::kChunkBytes);
 }
 

@@ -97,62 +97,11 @@ base::Result<base::Bytes> ControllerService::dispatch(const vm::Request& request
   preparing_ = false;
   abort_why_.clear();
   switch (request.command) {
-    case vm::Command::kStatus:
-      return status(request);
-    case vm::Command::kTimes:
-      return times(request);
-    case vm::Command::kGet:
-      return get(request);
-    case vm::Command::kSet:
-      return set(request);
-    case vm::Command::kForce:
-      return force(request);
-    case vm::Command::kUnforce:
-      return unforce(request);
-    case vm::Command::kForces:
-      return forces(request);
-    case vm::Command::kList:
-      return list(request);
-    case vm::Command::kImage:
-      return image(request);
-    case vm::Command::kBefore:
-      return before(request);
-    case vm::Command::kUpload:
-      return upload(request);
-    case vm::Command::kStage:
-      return stage(request);
-    case vm::Command::kFates:
-      return fates(request);
-    case vm::Command::kRehearse:
-      return rehearse(request);
-    case vm::Command::kSwitch:
-      return make_switch(request);
-    case vm::Command::kUndo:
-      return undo(request);
-    case vm::Command::kAccept:
-      return accept(request);
-    case vm::Command::kCancel:
-      return cancel(request);
-    case vm::Command::kAbort:
-      return abort(request);
-    case vm::Command::kStop:
-      return stop(request);
-    case vm::Command::kRestart:
-      return restart(request);
-    case vm::Command::kJournal:
-      return journal(request);
-    case vm::Command::kEvents:
-      return events(request);
-    case vm::Command::kFacts:
-      return facts(request);
-    case vm::Command::kUnits:
-      return units(request);
-    case vm::Command::kEdits:
-      return edits(request);
-    case vm::Command::kRedo:
-      return redo(request);
-    case vm::Command::kResetTimes:
-      return reset_times(request);
+#define COMMAND(id, name, handler, body, changes_state, meaning) \
+  case vm::Command::id:                                          \
+    return handler(request);
+#include "vm/runtime/commands.def"
+#undef COMMAND
   }
   return base::Error{base::Refusal::kProtocol, "unknown command"};
 }

@@ -94,36 +94,17 @@ class ControllerService : public vm::Service {
   using Answer = base::Result<base::Bytes>;
 
   Answer dispatch(const vm::Request& request);
-  Answer status(const vm::Request& request);
+  // An answer to each command: controller_*.cc.
+#define COMMAND(id, name, handler, body, changes_state, meaning) \
+  Answer handler(const vm::Request& request);
+#include "vm/runtime/commands.def"
+#undef COMMAND
   std::vector<vm::TaskActivity> activities() const;
-  Answer times(const vm::Request& request);
-  Answer reset_times(const vm::Request& request);
-  Answer get(const vm::Request& request);
-  Answer set(const vm::Request& request);
-  Answer force(const vm::Request& request);
-  Answer unforce(const vm::Request& request);
-  Answer forces(const vm::Request& request);
   static base::Error too_long();
   base::Bytes force_rows(const std::vector<std::string>& names) const;
-  Answer list(const vm::Request& request);
-  Answer image(const vm::Request& request);
-  Answer before(const vm::Request& request);
   Answer before_edit(const vm::Request& request);
   static Answer image_part(const base::Digest& digest, const base::Bytes& encoded,
                            uint64_t offset);
-  Answer upload(const vm::Request& request);
-  Answer stage(const vm::Request& request);
-  Answer fates(const vm::Request& request);
-  Answer rehearse(const vm::Request& request);
-  Answer make_switch(const vm::Request& request);
-  Answer undo(const vm::Request& request);
-  Answer accept(const vm::Request& request);
-  Answer cancel(const vm::Request& request);
-  Answer abort(const vm::Request& request);
-  Answer stop(const vm::Request& request);
-  Answer restart(const vm::Request& request);
-  Answer journal(const vm::Request& request);
-  Answer events(const vm::Request& request) const;
 
   // controller_units.cc
   // An edit on trial, or one that was undone.
@@ -147,10 +128,6 @@ class ControllerService : public vm::Service {
   base::Status check_newest(const vm::Request& request) const;
   // From the oldest; none of that name.
   online_change::TakenOut trial_taken_out(const std::string& edit) const;
-  Answer units(const vm::Request& request);
-  Answer edits(const vm::Request& request);
-  Answer redo(const vm::Request& request);
-  Answer facts(const vm::Request& request) const;
   // After a switch or an undo of this cycle.
   void note_units(const char* event, uint64_t cycle);
   // What is staged, as an edit; before it is forgotten.

@@ -109,7 +109,7 @@ base::Status ControllerService::check_newest(const vm::Request& request) const {
 }
 
 // Rows may come and go from version to version: who asks knows each by its name (E-06).
-base::Result<base::Bytes> ControllerService::facts(const vm::Request&) const {
+base::Result<base::Bytes> ControllerService::facts(const vm::Request&) {
   vm::Values facts;
   const auto add = [&](const char* name, std::string value) {
     facts.rows.push_back({name, {}, std::move(value)});

@@ -18,12 +18,10 @@ std::vector<std::string> adapters() {
 
 int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {
-      &stvm::kRun,    &stvm::kBench, &stvm::kServe,   &stvm::kStatus,  &stvm::kGet,
-      &stvm::kSet,    &stvm::kForce, &stvm::kUnforce, &stvm::kWatch,   &stvm::kChange,
-      &stvm::kEdits,  &stvm::kUndo,  &stvm::kRedo,    &stvm::kRevert,  &stvm::kAccept,
-      &stvm::kAbort,  &stvm::kStop,  &stvm::kRestart, &stvm::kJournal, &stvm::kEvents,
-      &stvm::kFleet,  &stvm::kSource, &stvm::kImage,  &stvm::kBridge,  &stvm::kReplay,
-      &stvm::kTop,    &stvm::kDoctor};
+#define VERB(entry) &stvm::entry,
+#include "tools/stvm/verbs.def"
+#undef VERB
+  };
   const tools::Tool tool{
       "stvm",
       "Runs images of stc, and changes them while they run.",

@@ -22,7 +22,8 @@ struct CommandRow {
   bool changes_state;
 };
 constexpr CommandRow kCommands[] = {
-#define COMMAND(id, name, body, changes_state, meaning) {name, RequestBody::body, changes_state},
+#define COMMAND(id, name, handler, body, changes_state, meaning) \
+  {name, RequestBody::body, changes_state},
 #include "vm/runtime/commands.def"
 #undef COMMAND
 };

@@ -25,7 +25,7 @@ inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
 inline constexpr uint32_t kChunkBytes = 512u << 10;  // of an image, a package, a page of rows
 
 enum class Command : uint8_t {
-#define COMMAND(id, name, body, changes_state, meaning) id,
+#define COMMAND(id, name, handler, body, changes_state, meaning) id,
 #include "vm/runtime/commands.def"
 #undef COMMAND
 };
