@@ -27,7 +27,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: install deb archives all build setup demo test test-arm64 test-minimal minimal clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
+.PHONY: install deb archives all build setup demo test test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
 
 all: build
 
@@ -52,6 +52,12 @@ minimal: setup
 	@cmake --preset minimal >/dev/null
 	@cmake --build build/minimal -j $(JOBS)
 	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)')
+
+# Every invariant is checked, those of hot loops too (base/check.h).
+hard: setup
+	@cmake --preset hard >/dev/null
+	@cmake --build build/hard -j $(JOBS)
+	@ctest --test-dir build/hard --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)')
 
 clang: setup
 	@scripts/setup.sh clang-16

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/check.h"
+#include "online_change/plan/plan_invariants.h"
+
 namespace online_change {
 namespace {
 
@@ -42,6 +45,8 @@ bool without_gaps(const UpdateStep& step) {
 
 Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to, Steps which)
     : plan_(plan), conversions_(from, to) {
+  base::dcheck([&] { return broken_promise(plan, from, to) == nullptr; },
+               "a transfer gets a plan that keeps its promises");
   size_t bytes = 0;
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
@@ -54,9 +59,20 @@ Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to,
   if (!std::is_sorted(converted_.begin(), converted_.end(), by_place)) {
     std::sort(converted_.begin(), converted_.end(), by_place);
   }
+  base::dcheck([&] { return pieces_cover(bytes); }, "the pieces are the steps, in their order");
   staged_.resize(bytes);
   if (which == Steps::kBoundary || which == Steps::kAll) saved_.resize(bytes);
   if (which == Steps::kAll) remembered_.resize(bytes);
+}
+
+// Each piece follows the one before it in the buffers, and all of them fill these.
+bool Transfer::pieces_cover(size_t bytes) const {
+  size_t at = 0;
+  for (const Piece& piece : pieces_) {
+    if (piece.at != at || piece.count == 0) return false;
+    at += piece.total();
+  }
+  return at == bytes;
 }
 
 void Transfer::add_step(uint32_t number, size_t at) {
@@ -218,6 +234,7 @@ void Transfer::count(const Piece& piece, BoundaryWork& work) const {
 }
 
 bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
+  base::dcheck(remembered_.size() == staged_.size(), "the way back has room for what was");
   for (const Piece& piece : pieces_) {
     if (piece.kind == StepKind::kCopy) continue;
     if (interrupted && interrupted()) return false;
@@ -228,6 +245,7 @@ bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
 
 bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
                          const Interrupted& interrupted) {
+  base::dcheck(remembered_.size() == staged_.size(), "the way back has room for what was");
   for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
     switch (piece.kind) {
@@ -281,6 +299,7 @@ void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
 }
 
 bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {
+  base::dcheck(saved_.size() == staged_.size(), "what is overwritten in place can be kept");
   for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
     gather(memory + piece.to, piece, piece.to_stride, saved_.data() + piece.at);
@@ -289,6 +308,7 @@ bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {
 }
 
 bool Transfer::write(uint8_t* memory, const Interrupted& interrupted) {
+  base::dcheck(!interrupted || saved_.size() == staged_.size(), "what may end early was saved");
   for (size_t done = 0; done < pieces_.size(); ++done) {
     if (interrupted && interrupted()) {
       restore_first(memory, done);
@@ -301,6 +321,7 @@ bool Transfer::write(uint8_t* memory, const Interrupted& interrupted) {
 }
 
 void Transfer::restore_first(uint8_t* memory, size_t count) const {
+  base::dcheck(saved_.size() == staged_.size(), "only what was saved is restored");
   for (size_t done = 0; done < count; ++done) {
     const Piece& piece = pieces_[done];
     scatter(saved_.data() + piece.at, piece, piece.to_stride, memory + piece.to);

@@ -107,6 +107,7 @@ class Transfer {
     uint64_t end() const { return uint64_t{to} + size; }
   };
 
+  bool pieces_cover(size_t bytes) const;
   void add_step(uint32_t number, size_t at);
   void add_bytes(Piece part, uint64_t length);
   const UpdateStep& step_of(const Piece& piece) const { return plan_.steps[piece.step]; }

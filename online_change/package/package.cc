@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/check.h"
 #include "base/digest_reader.h"
 #include "base/large_pages.h"
 #include "base/limits.h"
@@ -273,6 +274,8 @@ base::Result<Package> plans_for(const EncodedImage& from, const EncodedImage& to
     SameDataPlans plans = plans_of_same_data(from.image, to.image);
     package.forward = std::move(plans.forward);
     package.inverse = std::move(plans.inverse);
+    base::dcheck([&] { return check_package(package, from.image, to.image).ok(); },
+                 "what moves no data is a sound package, too");
     return package;
   }
   base::Result<Plan> forward = plan(from.image, to.image);

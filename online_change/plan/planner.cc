@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
 #include "online_change/plan/area_steps.h"
 #include "online_change/plan/by_address.h"
 #include "online_change/plan/pause.h"
+#include "online_change/plan/plan_invariants.h"
 
 namespace online_change {
 namespace {
@@ -58,18 +60,22 @@ base::Result<Plan> Planner::run() {
   for (uint32_t id : match_.old_order) {
     if (match_.new_of_old[id] == kNoInstance) drop_instance(id);
   }
+  base::dcheck(area_.empty(), "the steps of each area are in the plan");
   plan_.fates = fates_.take();
   ByAddress(old_, new_, plan_).run();
   for (const UpdateStep& step : plan_.steps) {
     if (!step.early) plan_.boundary_bytes += step.total();
   }
   plan_.predicted_pause_ns = predicted_pause_ns(plan_, old_, new_);
+  base::dcheck([&] { return broken_promise(plan_, old_, new_) == nullptr; },
+               "the planner keeps what a plan promises");
   return std::move(plan_);
 }
 
 void Planner::carry(uint32_t old_id, uint32_t new_id) {
   const ir::Instance& from = old_.instances[old_id];
   const ir::Instance& to = new_.instances[new_id];
+  base::dcheck(match_.new_of_old[old_id] == new_id, "who lives on is matched both ways");
   Carried instance{old_id, new_id, from.data, to.data, &differ_.area(from.type, to.type), ""};
   used_here_.clear();
   calls_.end_instance();
@@ -218,6 +224,7 @@ void Planner::add_dropped_rows(const Carried& instance) {
 
 void Planner::add_instance(uint32_t new_id) {
   const ir::Instance& instance = new_.instances[new_id];
+  base::dcheck(row_of_new_[new_id] == FateRows::kNoRow, "an instance is added once");
   uint64_t leaves = differ_.leaves(new_, instance.type);
   used_here_.clear();
   const bool hidden = instance.name == ir::kStartProgram;
@@ -238,6 +245,7 @@ void Planner::add_instance(uint32_t new_id) {
 
 void Planner::drop_instance(uint32_t old_id) {
   const ir::Instance& instance = old_.instances[old_id];
+  base::dcheck(match_.new_of_old[old_id] == kNoInstance, "who is dropped lives on nowhere");
   if (row_of_old_[old_id] == kReplaced || instance.name == ir::kStartProgram) return;
   uint32_t parent_row = instance.parent == 0 ? FateRows::kNoRow : row_of_old_[instance.parent];
   if (parent_row == kReplaced) {
@@ -256,6 +264,8 @@ void Planner::drop_instance(uint32_t old_id) {
 }
 
 void Planner::put(UpdateStep step) {
+  base::dcheck(step.size != 0 && step.count != 0, "a step writes something");
+  base::dcheck(step.to < new_.data_capacity, "a step writes inside of data memory");
   if (step.kind == StepKind::kInitialise) {
     uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
     step.early = !old_areas_.owns(step.to, static_cast<uint32_t>(hull));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/digest_reader.h"
 
 namespace online_change {
@@ -13,6 +14,7 @@ constexpr uint8_t other_of_two(uint8_t slot) { return slot == 0 ? 1 : 0; }
 }  // namespace
 
 base::Bytes encode(const ControlRecord& record) {
+  base::dcheck(record.slot < kImageSlots, "the slot of what boots is one of three");
   base::ByteWriter out;
   out.raw(record.boots);
   out.u8(record.slot);
@@ -23,7 +25,9 @@ base::Bytes encode(const ControlRecord& record) {
   const bool resumes = record.trial && record.resumes;
   if (resumes || (record.trial && !as_of_two)) out.u8(record.trial_slot);
   if (resumes) out.boolean(true);
-  return out.take();
+  base::Bytes bytes = out.take();
+  base::dcheck(bytes.size() <= kMostControlBytes, "a control record has room in its file");
+  return bytes;
 }
 
 std::optional<ControlRecord> decode_control(base::ByteSpan payload) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/check.h"
+
 namespace online_change {
 namespace {
 
@@ -36,6 +38,8 @@ void Copies::recover(uint64_t payload_bytes) {
       (void)bury(copy, {base::Refusal::kFileUnreadable, copy.name + " cannot be read"}).ok();
     }
     last_sequence_ = std::max(last_sequence_, copy.record.sequence);
+    base::dcheck(copy.record.state == RecordState::kValid || copy.record.payload.empty(),
+                 "only a valid copy has content");
   }
   // A later process may be able to read it.
   if (unread) last_sequence_ = std::min(last_sequence_ + kUnreadSequences, kLastSequence);
@@ -63,16 +67,24 @@ base::Status Copies::write(size_t number, const Payload& payload) {
   if (last_sequence_ >= kLastSequence) {
     return bury(copy, {base::Refusal::kStorageFailed, copy.name + ": no sequence number is left"});
   }
-  return write_as(++last_sequence_, copy, payload);
+  base::Status written = write_as(++last_sequence_, copy, payload);
+  base::dcheck(!written.ok() || newest([](size_t) { return true; }) == number,
+               "what was written last is the newest copy");
+  return written;
 }
 
 base::Status Copies::write_older(size_t number, const Payload& payload) {
   const std::optional<size_t> first = newest([](size_t) { return true; });
   if (!first || *first == number) return write(number, payload);
-  return write_as(copies_[*first].record.sequence - 1, copies_[number], payload);
+  base::dcheck(copies_[*first].record.sequence != 0, "there is a number below that of the newest");
+  base::Status written = write_as(copies_[*first].record.sequence - 1, copies_[number], payload);
+  base::dcheck(newest([](size_t) { return true; }) == first, "the newest copy stays the newest");
+  return written;
 }
 
 base::Status Copies::write_as(uint64_t sequence, Copy& copy, const Payload& payload) {
+  base::dcheck(copy.dead || copy.record.state != RecordState::kUnreadable,
+               "nothing is written over what could not be read");
   if (!copy.dead) copy.record = {RecordState::kDamaged, 0, {}};
   base::Status written =
       copy.dead ? replace_record(storage_, copy.name, kind_, sequence, payload, copy.room)
@@ -90,6 +102,7 @@ base::Status Copies::renew(size_t number) {
   if (!made.ok()) return bury(copy, made.error());
   copy.record = {};
   copy.dead = false;
+  base::dcheck(whole(number) == false, "a copy that was renewed holds nothing");
   return made;
 }
 

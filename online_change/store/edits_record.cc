@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/check.h"
 #include "base/digest_reader.h"
 #include "base/tool_limits.h"
 
@@ -26,9 +27,11 @@ bool is_name(std::string_view name) {
 }  // namespace
 
 base::Bytes encode(const std::vector<StoredEdit>& edits) {
+  base::dcheck(edits.size() <= base::kMostEditsOnTrial, "no more edits than are read again");
   base::ByteWriter out;
   out.u32(static_cast<uint32_t>(edits.size()));
   for (const StoredEdit& edit : edits) {
+    base::dcheck(is_name(edit.name), "an edit has a name that is read again");
     out.text(edit.name);
     out.text(edit.who);
     out.i64(edit.time_ns);
@@ -67,8 +70,8 @@ std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload) {
   return edits;
 }
 
-std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits,
-                                    const base::Digest& boots, const base::Digest& trial) {
+std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits, const base::Digest& boots,
+                                    const base::Digest& trial) {
   const auto last = std::find_if(edits.rbegin(), edits.rend(),
                                  [&](const StoredEdit& edit) { return edit.to == trial; });
   const auto end = last.base();

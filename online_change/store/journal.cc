@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/check.h"
 #include "base/crc32c.h"
 #include "base/digest_reader.h"
 #include "online_change/store/record.h"
@@ -60,9 +61,12 @@ base::Bytes encode(const JournalEntry& entry) {
   out.text(cut(entry.text, kMaxText));
   out.text(cut(entry.source, kMaxSource));
   base::Bytes sector = out.take();
+  base::check(sector.size() <= kChecksumAt, "an entry of the journal fits into its sector");
   sector.resize(kSectorBytes);
   const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kChecksumAt));
   std::memcpy(sector.data() + kChecksumAt, &checksum, sizeof checksum);
+  base::dcheck([&] { return entry.sequence > kLastSequence || decode_entry(sector).has_value(); },
+               "an entry of the journal is read as it was written");
   return sector;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/crc32c.h"
 #include "base/digest_reader.h"
 #include "base/sha256.h"
@@ -51,6 +52,16 @@ bool decode(base::ByteSpan sector, Header& out) {
   return true;
 }
 
+// Does read_record() take what is about to be written?
+bool is_readable(base::ByteSpan sector, RecordKind kind, uint64_t sequence,
+                 const Payload& payload) {
+  Header header;
+  if (!decode(sector, header) || header.kind != kind || header.sequence != sequence) return false;
+  base::Bytes all(payload.first.begin(), payload.first.end());
+  all.insert(all.end(), payload.second.begin(), payload.second.end());
+  return is_intact(header, all);
+}
+
 bool all_zero(base::ByteSpan bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0; });
 }
@@ -58,6 +69,7 @@ bool all_zero(base::ByteSpan bytes) {
 }  // namespace
 
 base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& payload) {
+  base::dcheck(sequence <= kLastSequence, "a record has a sequence number that is read again");
   base::ByteWriter out;
   out.u64(kRecordMagic);
   out.u32(payload.second_sum ? kInParts : kVersion);
@@ -74,6 +86,8 @@ base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& pay
   sector.resize(kSectorBytes);
   const uint32_t checksum = base::crc32c(base::ByteSpan(sector).first(kRecordChecksumAt));
   std::memcpy(sector.data() + kRecordChecksumAt, &checksum, sizeof checksum);
+  base::dcheck([&] { return is_readable(sector, kind, sequence, payload); },
+               "a record is read as it was written");
   return sector;
 }
 
@@ -90,6 +104,7 @@ Record read_record(vm::Storage& storage, const std::string& name, RecordKind kin
   base::Result<base::Bytes> payload = storage.read(name, kSectorBytes, header.length);
   if (!payload.ok()) return {RecordState::kUnreadable, 0, {}};
   if (!is_intact(header, *payload)) return {RecordState::kDamaged, 0, {}};
+  base::dcheck(payload->size() == header.length, "a valid record has the length that it says");
   return {RecordState::kValid, header.sequence, std::move(*payload)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/digest_reader.h"
 
 namespace online_change {
@@ -12,7 +13,14 @@ base::Bytes encode(const RetainRecord& record) {
   out.boolean(record.trial);
   out.u64(record.cycle);
   out.blob(record.values);
-  return out.take();
+  base::Bytes bytes = out.take();
+  base::dcheck(
+      [&] {
+        const auto read = decode_retain(bytes);
+        return read && read->image == record.image && read->values == record.values;
+      },
+      "retained values are read as they were written");
+  return bytes;
 }
 
 uint64_t retain_record_bytes(uint64_t values) { return encode(RetainRecord{}).size() + values; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/image_sections.h"
 
@@ -109,6 +110,14 @@ void Store::reject_boots() {
 }
 
 base::Status Store::write_control(const ControlRecord& next) {
+  base::check(next.slot < kImageSlots && next.trial_slot < kImageSlots, "a slot is one of three");
+  base::check(next.slot != next.trial_slot, "what boots and what is on trial lie in two slots");
+  base::dcheck(!in_slot_[next.slot] || in_slot_[next.slot] == next.boots,
+               "what boots is in the slot that the control record names");
+  base::dcheck(
+      !next.trial || !in_slot_[next.trial_slot] || in_slot_[next.trial_slot] == next.trial_digest,
+      "what is on trial is in the slot that the control record names");
+  base::dcheck(next.trial || (next.tries_left == 0 && !next.resumes), "without a trial, no tries");
   control_copies_.check();
   const std::optional<size_t> copy = control_copies_.victim([](size_t) { return false; });
   if (!copy) return failed("the control record cannot be written: " + control_copies_.complaint());
@@ -152,6 +161,7 @@ base::Status Store::write_image(size_t slot, const ImageToStore& image, uint64_t
     show_slots();
     if (!written.ok()) return written;
   }
+  base::dcheck(slots_.whole(slot), "an image that was written is in a whole slot");
   in_slot_[slot] = image.digest;
   written_[slot] = true;
   return base::Ok{};
@@ -202,6 +212,7 @@ size_t Store::free_trial_slot() const {
     if (taken) continue;
     if (!free || (slots_[*free].dead && !slots_[slot].dead)) free = slot;
   }
+  base::check(free.has_value(), "of three slots, one is free");
   return *free;
 }
 

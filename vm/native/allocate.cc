@@ -76,6 +76,7 @@ base::Result<Allocated> Allocator::run() {
     end(b);
   }
   if (why_ != nullptr) return base::Error{base::Refusal::kTooLarge, why_};
+  expect_places(f_, out_);
   return std::move(out_);
 }
 

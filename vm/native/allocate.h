@@ -12,6 +12,7 @@
 #include <array>
 #include <vector>
 
+#include "base/check.h"
 #include "base/result.h"
 #include "vm/native/lir.h"
 
@@ -93,6 +94,13 @@ struct AllocatorOptions {
 
 base::Result<Allocated> allocate(const Function& function, const Target& target,
                                  const AllocatorOptions& options);
+
+// Has everything that is emitted a place that exists? allocate() promises it, and emitters rely on
+// it (base/check.h). Linear in the steps.
+bool has_places(const Function& function, const Allocated& all);
+inline void expect_places(const Function& function, const Allocated& all) {
+  base::dcheck([&] { return has_places(function, all); }, "every value that is used has a place");
+}
 
 // A register that nothing else uses; a target knows it by its number.
 inline constexpr uint32_t kMostRegisters = 32;

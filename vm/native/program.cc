@@ -4,6 +4,7 @@
 #include <cstring>
 #include <unordered_set>
 
+#include "base/check.h"
 #include "vm/exec/context.h"
 #include "vm/native/code_facts.h"
 #include "vm/native/code_memory.h"
@@ -144,6 +145,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
     return false;
   }
   work.places = std::move(*places);
+  base::dcheck(work.places.blocks.size() == work.function.blocks.size(), "blocks stay parallel");
   work.pou->side =
       side_units(work.function, work.pou->units, bodies.common().code_of(image, pou).data());
   return true;
@@ -170,6 +172,8 @@ void finish(const Emitted& emitted, const uint8_t* base) {
   SideUnits& side = pou.side;
   const Entries& entries = emitted.entries;
   pou.machine = base + entries.begin;
+  base::dcheck(entries.behind_call.size() == emitted.calls.size(), "each call comes back");
+  base::dcheck(entries.heads.size() == emitted.head_units.size(), "each head has its unit");
   for (size_t c = 0; c < entries.behind_call.size(); ++c) {
     const Call& call = emitted.calls[c];
     if (call.inlined) continue;
@@ -192,8 +196,15 @@ void finish(const Emitted& emitted, const uint8_t* base) {
   side.helper = {};
   side.call = {};
   side.resume = {};
+  base::dcheck(next <= side.count, "a POU has the side units of its entries");
   std::sort(pou.entries.begin(), pou.entries.end(),
             [](const auto& a, const auto& b) { return a.unit < b.unit; });
+  base::dcheck(
+      [&] {
+        const auto known = [&](const auto& e) { return e.side < side.count; };
+        return std::all_of(pou.entries.begin(), pou.entries.end(), known);
+      },
+      "an entry leads to a side unit");
 }
 
 using PouNatives = std::vector<std::shared_ptr<const PouNative>>;
@@ -313,12 +324,14 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
   if (options.tier == Tier::kInterpreter || !is_available()) return nullptr;
   const auto made = std::make_shared<Program>(Key());
   host::Assembler assembler;
+  base::check(pous.size() == image.pous.size(), "each POU of an image has an entry");
   const host::Shared shared = host::emit_shared(assembler);
   const std::vector<Emitted> all =
       emit_all({image, clean_bools, pous, options, running == nullptr ? nullptr : &running->pous_,
                 versions, progress, running_image},
                shared, assembler, made->pous_);
   if (progress != nullptr && progress->unwanted) return nullptr;
+  base::dcheck(made->pous_.size() == pous.size(), "each POU is made or says why not");
   made->shared_code_ = CodeMemory::make(assembler.code());
   if (made->shared_code_ == nullptr) return nullptr;
   const uint8_t* const base = made->shared_code_->data();
@@ -331,6 +344,10 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
     const PouNative& pou = *made->pous_[number];
     pous[number].machine = base + assembler.offset_of(shared.interpret);
     if (pou.machine == nullptr) continue;
+    base::dcheck(pou.code != nullptr && pou.machine >= pou.code->data() &&
+                     pou.machine < pou.code->data() + pou.code->size(),
+                 "machine code lies in its memory");
+    base::dcheck(pou.units == pous[number].code, "machine code is of the units beside it");
     pous[number].machine = pou.machine;
     pous[number].entry = made->entry(number, pous[number].code);
   }
@@ -344,6 +361,7 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
 }
 
 const ir::Unit* Program::entry(uint32_t pou, const ir::Unit* unit) const {
+  base::dcheck(pou < pous_.size(), "an entry is asked for a POU of the program");
   const PouNative& native = *pous_[pou];
   if (native.machine == nullptr) return unit;
   const auto number = static_cast<uint64_t>(unit - native.units);
@@ -354,6 +372,7 @@ const ir::Unit* Program::entry(uint32_t pou, const ir::Unit* unit) const {
 }
 
 const ir::Unit* Program::real_unit(uint32_t pou, const ir::Unit* unit) const {
+  base::dcheck(pou < pous_.size(), "a unit is of a POU of the program");
   const PouNative& native = *pous_[pou];
   const ir::Unit* const first = native.side.units.get();
   const std::less<const ir::Unit*> before;

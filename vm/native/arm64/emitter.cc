@@ -79,6 +79,7 @@ void Emitter::leave_frame() {
 
 // Once more with long branches when the short ones do not reach.
 Entries Emitter::run() {
+  expect_places(f_, places_);
   const Assembler::Mark begin = a_.mark();
   function();
   if (!a_.reaches(begin)) {

@@ -80,6 +80,7 @@ void Emitter::enter_frame() { a_.alu_imm(Alu::kSub, Operand::of(kRsp), frame_byt
 void Emitter::leave_frame() { a_.alu_imm(Alu::kAdd, Operand::of(kRsp), frame_bytes_, 8); }
 
 Entries Emitter::run() {
+  expect_places(f_, places_);
   leave_ = a_.label();
   entries_.begin = a_.here();
   enter_frame();

@@ -1,0 +1,13 @@
+// What a plan promises to whoever carries it out, whoever made it. Planner asks it of what it has
+// made, Transfer of what it is given (base/check.h). For plans of others, package/plan_check.h.
+#pragma once
+
+#include "online_change/plan/plan.h"
+
+namespace online_change {
+
+// The first promise that the plan breaks; null: none. `from` and `to`: the versions whose memories
+// it reads and writes. Linear in the steps.
+const char* broken_promise(const Plan& plan, const ir::Image& from, const ir::Image& to);
+
+}  // namespace online_change
