@@ -104,8 +104,7 @@ struct Known {
   uint32_t block = 0;
 };
 
-// Addition does not commute there: of two floats that are no numbers the first one comes out
-// (ir/types/not_a_number.h).
+// No floats: of two that are no numbers the first one comes out (ir/types/not_a_number.h).
 bool commutes(Op op, Scalar scalar) {
   if (op == Op::kAdd || op == Op::kMul) return !is_float(scalar);
   return op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kEq || op == Op::kNe;

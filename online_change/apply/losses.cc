@@ -22,8 +22,8 @@ std::string value_text(const ir::Image& image, const ir::Symbol& symbol,
   return shortened(ir::format_value(image, symbol, memory));
 }
 
-constexpr const char* kConstantNow = "makes way for a constant";
-constexpr const char* kInputNow = "makes way for an input";
+constexpr const char* kConstantNow = "is replaced by a constant";
+constexpr const char* kInputNow = "is replaced by an input";
 
 // `next`: what the new version has at the path; null: nothing.
 LiveLoss lost_value(std::string path, const ir::Image& old_image, const ir::Symbol& before,
@@ -68,8 +68,8 @@ bool is_constant_already(const ir::Image& old_image, const ir::Symbol& before,
   step.new_type = next.type;
   step.to = next.data;
   base::Bytes converted(initial.size());
-  const char* const loss = Conversions(old_image, new_image)
-                               .convert(step, 0, memory.data() + before.data, converted);
+  const char* const loss =
+      Conversions(old_image, new_image).convert(step, 0, memory.data() + before.data, converted);
   return loss == nullptr && converted == initial;
 }
 
@@ -116,8 +116,8 @@ bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,
 LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
                        std::span<const uint8_t> memory) {
   return {output.path, value_text(old_image, output.symbol, memory), "",
-          "is written by nobody any more (" + ir::address_text(output.address) +
-              ") and stays so"};
+          "is not written by any code any more (" + ir::address_text(output.address) +
+              ") and keeps its value"};
 }
 
 uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,

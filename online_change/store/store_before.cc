@@ -20,20 +20,20 @@ base::Result<StoredImage> Store::before() const {
   std::lock_guard lock(before_mutex_);
   const base::Result<uint64_t> size = storage_.size(kBeforeFile);
   if (!size.ok() && size.error().refusal == base::Refusal::kFileNotFound) {
-    return base::Error{base::Refusal::kNothingToUndo, "no version before is stored"};
+    return base::Error{base::Refusal::kNothingToUndo, "no earlier version is stored"};
   }
   Record record = read_record(storage_, kBeforeFile, RecordKind::kImage);
   base::Bytes& payload = record.payload;
   if (record.state != RecordState::kValid || payload.size() < 2 * kDigestBytes) {
     return base::Error{base::Refusal::kStorageFailed,
-                       "the version before cannot be read, or is damaged"};
+                       "the earlier version cannot be read, or is damaged"};
   }
   // The record was kept for an accept that a power cut has prevented, or a later one could not be
   // kept.
   const base::Digest boots_now = boots();
   if (!std::equal(boots_now.begin(), boots_now.end(), payload.begin())) {
     return base::Error{base::Refusal::kNothingToUndo,
-                       "what is stored is not the version before the one that boots"};
+                       "the stored earlier version is not the one before the program that boots"};
   }
   StoredImage image;
   std::copy_n(payload.begin() + kDigestBytes, kDigestBytes, image.digest.begin());

@@ -71,7 +71,7 @@ stvm image --dir plc -o typed.img || fail "no image"
 cmp first.img typed.img || fail "switched by what was typed before the question"
 
 follow --yes --permanent
-until_said 1 'what was saved is what runs'
+until_said 1 'what was saved is running already'
 
 # Statements: one POU is compiled, values stay, and what runs is what a build against it gives.
 sed 's/+ Step/+ 2 * Step/' plant/pump.st | save plant/pump.st
@@ -116,7 +116,7 @@ end_follow
 
 # On trial: the next save waits until it is accepted or undone; what was undone is no base.
 follow --yes
-until_said 1 'what was saved is what runs'
+until_said 1 'what was saved is running already'
 sed 's/Cycles + 3/Cycles + 4/' plant/main.st | save plant/main.st
 until_said 1 'on trial'
 sed 's/Cycles + 4/Cycles + 5/' plant/main.st | save plant/main.st
@@ -154,7 +154,7 @@ mkfifo keys
 script -qec "$bin/stvm change --watch plant --dir plc" /dev/null <keys >watch.out 2>watch.log &
 echo $! >watch.pid
 exec 3>keys
-until_said 1 'what was saved is what runs'
+until_said 1 'what was saved is running already'
 sed 's/Cycles + 6/Cycles + 8/' plant/main.st | save plant/main.st
 until_said 1 'Switch now'
 printf '\004' >&3
@@ -176,12 +176,12 @@ end_follow
 export STC_PATIENCE=3000
 follow --yes --permanent --allow-loss
 unset STC_PATIENCE
-until_said 1 'what was saved is what runs'
+until_said 1 'what was saved is running already'
 expect 0 stvm set --dir plc Main.Last=123456
 cp plant/main.st away.st
 rm plant/main.st
 sed 's/Hours := Hours/Hours := 1 * Hours/' plant/pump.st | save plant/pump.st
-until_said 1 'waiting with what was saved: plant/main.st goes and comes'
+until_said 1 'waiting with what was saved: plant/main.st appears and disappears'
 sed 's/Cycles + 6/Cycles + 9/' away.st | save plant/main.st
 until_said 1 'accepted: it boots next'
 expect 0 stvm get --dir plc Main.Last

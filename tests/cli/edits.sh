@@ -69,7 +69,7 @@ expect 0 stvm edits --dir plc
 # Those that were made on the first one go too, and that is said and asked before.
 expect 2 stvm undo E1 --dir plc
 said 'these go, newest first: E3, E2, E1'
-said 'nobody to ask: not a terminal; give --yes'
+said 'cannot ask for confirmation: stdin is not a terminal; pass --yes'
 expect 0 stvm undo E1 --dir plc --dry-run
 said 'E3, E2, E1'
 expect 7 stvm undo E9 --dir plc

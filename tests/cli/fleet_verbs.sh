@@ -71,7 +71,7 @@ mkdir elsewhere
 (cd elsewhere && expect 0 stvm fleet continue ../x.fleet --yes --allow-overrun)
 [ ! -e x.fleet.left ] || fail "nobody is left"
 expect 7 stvm fleet continue x.fleet --yes
-said 'R0305.*nobody is left'
+said 'R0305.*there is no run to continue'
 expect 0 stvm edits --dir two
 said '^  POUs +A .body., B .body.$'
 sed 's/^# change ./# change 0/; t; s/^# change 0/# change 1/' kept.left >x.fleet.left
@@ -83,7 +83,7 @@ rm x.fleet.left
 sed 's/n := n + 1; END_FUNCTION_BLOCK/n := n + 9; END_FUNCTION_BLOCK/' new.st >nines.st
 expect 0 stvm change nines.st --dir three --yes --allow-overrun
 expect 2 stvm fleet undo x.fleet "$@"
-said 'nobody to ask'
+said 'cannot ask for confirmation: stdin is not a terminal'
 expect 0 stvm fleet undo x.fleet "$@" --dry-run --allow-overrun
 said '^one +original +possible +E1 *$'
 expect 0 stvm fleet undo x.fleet "$@" --yes --allow-overrun

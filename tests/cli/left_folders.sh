@@ -19,7 +19,7 @@ watch() {
   env ${preload:+"LD_PRELOAD=$preload"} "$bin/stvm" change --watch --yes main.st --dir plc >"$1.log" 2>&1 </dev/null &
   echo $! >"$1.pid"
   for _ in $(seq 4000); do
-    grep -q 'what was saved is what runs' "$1.log" && return 0
+    grep -q 'what was saved is running already' "$1.log" && return 0
     sleep 0.05
   done
   fail "$1 does not follow: $(cat "$1.log")"

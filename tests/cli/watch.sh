@@ -203,7 +203,7 @@ cp plant/pump.st away.st
 
 mv plant/pump.st moved.st
 save_another
-held 'moved away' 'pump.st goes and comes'
+held 'moved away' 'pump.st appears and disappears'
 mv moved.st plant/pump.st
 complete 'moved away and back'
 
@@ -218,7 +218,7 @@ complete 'removed and written piece by piece'
 
 : >plant/pump.st
 save_another
-held 'empty' 'pump.st goes and comes'
+held 'empty' 'pump.st appears and disappears'
 cat away.st >plant/pump.st
 complete 'empty for a moment'
 

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Every row of the tables occurs in a test: diagnostics and refusals by code or identifier, traps by name, opcodes and
-# limits by identifier. Rows without a test stand in tables_not_yet.txt, which may only shrink.
+# Every row of the tables occurs in a test: diagnostics and refusals by code or identifier, traps by
+# name, native functions and limits by identifier. Rows without a test stand in tables_not_yet.txt,
+# which may only shrink. Instructions are run by golden files and random programs, on every tier.
 set -eu
 cd "$1"
 corpus=$(mktemp)

@@ -102,11 +102,12 @@ void stand_in_for_closed_streams() {
 int check_output(const Tool& tool, int code) {
   const bool before = std::ferror(stdout) != 0;
   if (std::fflush(stdout) == 0 && !before) return code;
-  std::fprintf(stderr,
-               "%s: standard output could not be written%s%s\n"
-               "  help: what was done is done, and what it said is not complete; free space, or "
-               "write to another place\n",
-               tool.name, before ? "" : ": ", before ? "" : std::strerror(errno));
+  std::fprintf(
+      stderr,
+      "%s: standard output could not be written%s%s\n"
+      "  help: the command has done its work, but its output is not complete; free space, or "
+      "write to another place\n",
+      tool.name, before ? "" : ": ", before ? "" : std::strerror(errno));
   return code == kOk || code == kFindings ? kOutputLost : code;
 }
 

@@ -16,12 +16,13 @@ constexpr ExitRow kRows[] = {
     {kOk, "ok", "done, and nothing was found"},
     {kFindings, "findings",
      "the sources have errors, a test failed, a file would change, a trap stopped the run, the "
-     "machine is no good"},
-    {kUsage, "usage", "the command line was not understood (R0504), or nobody was there to ask"},
+     "machine does not suit a controller"},
+    {kUsage, "usage",
+     "the command line was not understood (R0504), or a question could not be asked"},
     {kRefused, "refused",
      "refused for the reason that the code (R0101 ...) on standard error names"},
     {kInternal, "internal", "an error in the program itself (R0599)"},
-    {kOutputLost, "output", "standard output could not be written; what was done is done"},
+    {kOutputLost, "output", "standard output could not be written; the work itself was done"},
 };
 
 }  // namespace

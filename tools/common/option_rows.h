@@ -10,7 +10,7 @@ namespace tools {
 inline constexpr OptionRow kDialectOption{
     "--dialect",
     "NAME",
-    "of the sources: iec, codesys (default) or twincat",
+    "dialect of the sources: iec, codesys (default) or twincat",
 #define DIALECT(id, name, what) name "|"
 #include "frontend/dialects.def"
 };
@@ -45,7 +45,8 @@ inline constexpr OptionRow kDryRunOption{
 inline constexpr OptionRow kRestrictedOption{
     "--restricted", nullptr, "refuse when the interface of a POU is edited", "", "--unrestricted"};
 inline constexpr OptionRow kMatchingOption{
-    "--matching", nullptr, "of a fleet file: only the units that the program has as they were"};
+    "--matching", nullptr,
+    "for a fleet file: take only the units that are there as before the edit"};
 inline constexpr OptionRow kStrategyOption{
     "--strategy", "S",
     "in-place (default, or what the project says), or standby: a second data area, made in idle "
@@ -54,8 +55,7 @@ inline constexpr OptionRow kStrategyOption{
 
 // What every command takes without a row of its own; dispatch() carries it out.
 inline constexpr OptionRow kQuietOption{
-    "--quiet|-q", nullptr,
-    "nothing on standard output but what --format asks for; mistakes and the exit code stay"};
+    "--quiet|-q", nullptr, "print only what --format asks for; errors and the exit code stay"};
 inline constexpr OptionRow kColorOption{
     "--color", "WHEN",
     "auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands",

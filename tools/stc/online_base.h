@@ -22,7 +22,7 @@ inline constexpr tools::OptionRow kTableOption{
 inline constexpr tools::OptionRow kTargetOption{
     "--target",
     "HOST|VERSION",
-    "of the stvm that takes the edit: a version, a host or a state directory; repeatable",
+    "stvm that takes the edit: its version, host or state directory; repeatable",
     "",
     "",
     tools::Times::kMany};

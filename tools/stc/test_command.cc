@@ -19,18 +19,18 @@ namespace {
 
 constexpr tools::OptionRow kTestOptions[] = {
     {"--filter|-f", "PATTERN", "only tests whose name matches; * and ? are wildcards"},
-    {"--shuffle", nullptr, "in an order that is drawn, and said as a seed"},
-    {"--seed", "N", "in the order of the run that said this seed"},
+    {"--shuffle", nullptr, "run them in a random order; the seed of it is printed"},
+    {"--seed", "N", "run them in the order of the run that printed this seed"},
     {"--timeout", "N",
      "calls and rounds of loops that a test may take (default: 100000000); whatever the machine, "
      "the same test is stopped at the same place"},
     {"--format", "FORM", "text (default), tap, junit or json", "text|tap|junit|json"},
-    {"--output|-o", "FILE", "write that form to a file, and text to the terminal"},
+    {"--output|-o", "FILE", "write this format to a file, and text to the terminal"},
     {"--list", nullptr, "names and places of the tests, nothing is run"},
     {"--watch", nullptr, "stay, and run them again whenever a source is saved", "",
      "--list|--output|--coverage|--fail-under"},
     {"--coverage", "DIR", "write into this folder what the tests reach"},
-    {"--coverage-format", "FORM", "of these files: lcov, cobertura or html (default: all of them)",
+    {"--coverage-format", "FORM", "which files: lcov, cobertura or html (default: all)",
      "lcov|cobertura|html"},
     {"--fail-under", "PERCENT", "exit code 1 when the tests reach less"},
     TOOLS_COMPILE_OPTIONS,
@@ -42,7 +42,7 @@ constexpr tools::Command kTestCommand{"test", "[PATHS...]", "Runs the TEST block
 base::Result<uint64_t> fuel_option(const tools::Options& options) {
   base::Result<uint64_t> fuel = options.number("--timeout", kTestFuel);
   if (!fuel.ok() || *fuel != 0) return fuel;
-  return base::Error{base::Refusal::kUsage, "--timeout 0: no test gets anywhere; 1 is the least"};
+  return base::Error{base::Refusal::kUsage, "--timeout 0: no test could run; the least is 1"};
 }
 
 base::Result<TestRun> run_all(const TestVersion& tests, const Project& project,

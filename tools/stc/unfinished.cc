@@ -35,7 +35,7 @@ Unfinished::Wait Unfinished::for_files_away(const Stamps& before, const Stamps& 
     const Time since = known == away_.end() ? time : known->second;
     away.emplace(path, since);
     if (since + believed_gone() > wait.until)
-      wait = {since + believed_gone(), path + " goes and comes"};
+      wait = {since + believed_gone(), path + " appears and disappears"};
   }
   away_ = std::move(away);
   return wait;

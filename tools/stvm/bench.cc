@@ -19,7 +19,8 @@ namespace {
 constexpr tools::OptionRow kBenchOptions[] = {
     {"--program", "P", "program instance (default: the first)"},
     {"--scans", "N", "scans that are measured (default 10000); a tenth more run before"},
-    {"--batch", "N", "scans between two looks at the clock (default 1); the quotient counts"},
+    {"--batch", "N",
+     "scans between two readings of the clock (default 1); their time is divided by N"},
     {"--period", "NS", "virtual time between two scans (default 10000000)"},
     STVM_TIER_OPTION,
     TOOLS_COMPILE_OPTIONS,

@@ -47,7 +47,7 @@ class Follower {
     base::Result<vm::StatusReport> status = client_.status();
     if (!status.ok()) return status.error();
     if (change.package.empty() && status->running == change.base) {
-      std::fputs("what was saved is what runs\n", stderr);
+      std::fputs("what was saved is running already\n", stderr);
       return tools::FollowedAnswer{};
     }
     if (base::Status free = check_no_trial(*status); !free.ok()) {
@@ -79,7 +79,7 @@ class Follower {
       if (!status.ok()) return status.error();
       if (check_no_trial(*status).ok()) {
         if (status->running == on_trial) return tools::FollowedAnswer{FollowedEnd::kAgain, {}};
-        std::fputs("undone: what was saved meanwhile is left; the next save is another try\n",
+        std::fputs("undone: what was saved meanwhile is not brought; the next save will be\n",
                    stderr);
         return tools::FollowedAnswer{};
       }
@@ -124,7 +124,8 @@ class Follower {
 
 int follow(const Sources& sources, const SwitchOptions& options, ControllerClient& client) {
   if (options.ask && !options.dry_run && ::isatty(STDIN_FILENO) == 0) {
-    return refuse({base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"});
+    return refuse({base::Refusal::kUsage,
+                   "cannot ask for confirmation: stdin is not a terminal; pass --yes"});
   }
   base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return refuse(status.error());

@@ -31,7 +31,7 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
 
 base::Error ControllerService::others_upload() const {
   if (upload_by_.empty()) return {base::Refusal::kProtocol, "no package has been uploaded"};
-  return {base::Refusal::kChangePending, upload_by_ + " brings another change just now"};
+  return {base::Refusal::kChangePending, upload_by_ + " is bringing another change now"};
 }
 
 base::Status ControllerService::check_upload(const vm::Request& request,
@@ -71,8 +71,9 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
-  base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {},
-                                                  request.names.size() > 2 ? request.names[2] : "");
+  base::Result<base::Bytes> staged =
+      stage_package(std::move(package), request.flags, unless, {},
+                    request.names.size() > 2 ? request.names[2] : "");
   if (!staged.ok()) return staged;
   staged_digest_ = request.digest;
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
@@ -169,7 +170,7 @@ base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan pack
                                                              uint32_t flags,
                                                              const std::string& taken_out) {
   if (rehearsal_ && rehearsal_of_ != session_) {
-    return base::Error{base::Refusal::kChangePending, "somebody else looks at a change just now"};
+    return base::Error{base::Refusal::kChangePending, "somebody else is looking at a change now"};
   }
   gone_.erase(session_);
   forget_report();

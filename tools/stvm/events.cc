@@ -23,7 +23,8 @@ constexpr std::chrono::milliseconds kFollowLook{100};
 
 constexpr tools::OptionRow kEventsOptions[] = {
     {"--follow|-f", nullptr, "go on with each new event, until the controller ends"},
-    {"--since", "TIME", "of then or later: 2026-03-01T08:00:00 (UTC), or 90s, 10m, 1h30m, 2d ago"},
+    {"--since", "TIME",
+     "events from then on: 2026-03-01T08:00:00 (UTC), or 90s, 10m, 1h30m, 2d ago"},
     {"--level", "LEVEL", "at least that serious (default: info, which is all)",
      "error|warning|notice|info"},
     STVM_CONTROLLER_OPTIONS,

@@ -66,11 +66,12 @@ base::Status check_walk(const FleetRun& run) {
     return fleet_usage("--jobs and --one-by-one contradict each other");
   if (!changes(run.verb)) return base::Ok{};
   if (several && run.how.ask && !run.how.dry_run) {
-    return fleet_usage("--jobs asks nobody about each controller; give --yes");
+    return fleet_usage("--jobs cannot ask about each controller; pass --yes");
   }
-  // E-28: nobody to ask is said before anything is sent to anybody.
+  // E-28: without a terminal and --yes, nothing is sent to anybody.
   if (run.how.ask && !run.how.dry_run && !can_ask()) {
-    return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
+    return base::Error{base::Refusal::kUsage,
+                       "cannot ask for confirmation: stdin is not a terminal; pass --yes"};
   }
   return base::Ok{};
 }
@@ -144,7 +145,8 @@ std::unique_ptr<FleetVisit> visit_of(const FleetRun& run) {
 
 void say_left(const FleetLeft& left, const FleetRun& run) {
   if (!left.complaint().empty()) {
-    std::fprintf(stderr, "stvm: who is left cannot be noted: %s\n", left.complaint().c_str());
+    std::fprintf(stderr, "stvm: the list of controllers that are left cannot be written: %s\n",
+                 left.complaint().c_str());
   } else if (!left.members().empty() && !run.json) {
     std::printf("%zu left: `stvm fleet continue %s` goes on with them\n", left.members().size(),
                 run.edit.path.c_str());

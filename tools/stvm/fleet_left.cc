@@ -42,7 +42,7 @@ std::string place_text(const std::string& place) {
 base::Result<std::string> FleetLeft::read(std::vector<FleetMember>& members) const {
   const auto nobody = [&](const char* why) {
     return base::Error{base::Refusal::kNothingToUndo,
-                       base::joined({"nobody is left of a run: ", path_, why})};
+                       base::joined({"there is no run to continue: ", path_, why})};
   };
   if (!tools::is_there(path_)) return nobody(" is not there");
   base::Result<std::string> text = tools::read_text(path_);

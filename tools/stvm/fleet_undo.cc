@@ -121,10 +121,11 @@ FleetRow FleetAccept::visit(const FleetMember& member) {
     return row;
   }
   if (!others.empty() && !how_.ask) {
-    return talk_.failed(std::move(row),
-                        {base::Refusal::kChangePending,
-                         base::joined({"below it is on trial, and would become final too: ", others,
-                                       "; accept or undo that there, or go without --yes"})});
+    return talk_.failed(
+        std::move(row),
+        {base::Refusal::kChangePending,
+         base::joined({"edits below it are on trial and would become final, too: ", others,
+                       "; accept or undo that there, or go without --yes"})});
   }
   if (how_.ask) {
     base::Status go = how_.confirm();

@@ -30,7 +30,8 @@ bool can_ask() { return ::isatty(STDIN_FILENO) != 0; }
 
 base::Status ask(const char* question, const std::string& otherwise) {
   if (!can_ask()) {
-    return base::Error{base::Refusal::kUsage, "nobody to ask: not a terminal; give --yes"};
+    return base::Error{base::Refusal::kUsage,
+                       "cannot ask for confirmation: stdin is not a terminal; pass --yes"};
   }
   const std::string answer = answer_to(question, "[y/N]");
   if (is_yes(answer)) return base::Ok{};

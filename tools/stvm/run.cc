@@ -26,7 +26,7 @@ namespace {
 
 constexpr tools::OptionRow kRunOptions[] = {
     tools::kScansOption,
-    {"--virtual-time", nullptr, "as fast as it can, the same every time"},
+    {"--virtual-time", nullptr, "run as fast as possible, the same every time"},
     {"--set", "NAME=VALUE", "write a variable before the first scan; repeatable", "", "",
      tools::Times::kMany},
     {"--force", "NAME=VALUE", "impose a value in every scan; repeatable", "", "",

@@ -16,7 +16,7 @@
   {"--duration", "TASK=TIME", "virtual time: each scan of the task lasts so long; repeatable", \
    "",           "",          tools::Times::kMany},                                            \
       {"--safe-point", "TIME", "virtual time: so much for each call and end of a loop"},       \
-      {"--change", "TIME=PATH", "virtual time: the program becomes that one, from then on"},   \
+      {"--change", "TIME=PATH", "virtual time: change to that program at this time"},          \
       {"--configuration", "TIME", "idle time that this change takes before its switch"},       \
       tools::kStrategyOption, {                                                                \
     "--chart", "FILE|-", "SVG timing chart of tasks, exchange and change; -: as text"          \

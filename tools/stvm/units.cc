@@ -125,7 +125,7 @@ std::string facts_text(const ControllerFacts& facts, const vm::StatusReport& sta
   const auto number = [](uint64_t value) { return std::to_string(value); };
   std::string out;
   if (facts.empty()) {
-    out = "controller  of an older version, which does not say more\n";
+    out = "controller  of an older version, which says no more about itself\n";
   } else {
     out =
         base::joined({"controller  stvm ", fact(facts, "version"), ", images ",
