@@ -107,8 +107,8 @@ class TcpServer : public Serving {
 
   vm::Descriptor accept_from(sockaddr_storage& peer, socklen_t& size) const {
     size = sizeof peer;
-    return vm::Descriptor(
-        ::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size, SOCK_CLOEXEC));
+    return vm::Descriptor(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                    SOCK_CLOEXEC));
   }
 
   // When there are too many, whoever has been silent longest makes room. Where the process has no
@@ -118,9 +118,7 @@ class TcpServer : public Serving {
     socklen_t size = 0;
     vm::Descriptor socket = accept_from(peer, size);
     if (!socket.valid() && (errno == EMFILE || errno == ENFILE) && reserve_.valid()) {
-      {
-        const vm::Descriptor given_up = std::move(reserve_);
-      }
+      { const vm::Descriptor given_up = std::move(reserve_); }
       socket = accept_from(peer, size);
     }
     if (!socket.valid()) {

@@ -157,7 +157,7 @@ namespace {
 
 const char* name_space(Edition form) {
   return form == Edition::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
-                                   : "http://www.plcopen.org/xml/tc6_0201";
+                                : "http://www.plcopen.org/xml/tc6_0201";
 }
 
 void put_headers(Node project, const std::string& name) {

@@ -192,7 +192,8 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
   info.name = name;
   info.library = library;
   info.open = is_open(decl);
-  info.as_block = for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
+  info.as_block =
+      for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
   if (const std::string rule = renamed_from(tree, decl.attributes); !rule.empty()) {
     info.old_name = keep_name(whole_old_names(name, rule));
   }

@@ -4,7 +4,9 @@
 #include "frontend/sema/sema.h"
 
 namespace frontend {
-namespace {}  // namespace
+namespace {
+
+}  // namespace
 
 bool Objects::is_own(const Expr& expr) const {
   const Expr& head = expr.kind == ExprKind::kDeref ? sema_.tree[expr.operand] : expr;

@@ -57,10 +57,10 @@ void apply_task_attributes(Sema& sema, const TaskDecl& decl, ir::Task& task) {
     }
   }
   if (task.policy.freewheeling && has_idle_overrun(task.policy)) {
-    sema.error(
-        Code::kBadTaskPolicy, decl.span,
-        "task " + quoted(decl.name.text) + " is freewheeling: no release finds its scan running",
-        "leave the attribute `overrun` out");
+    sema.error(Code::kBadTaskPolicy, decl.span,
+               "task " + quoted(decl.name.text) +
+                   " is freewheeling: no release finds its scan running",
+               "leave the attribute `overrun` out");
   }
   const bool periodic = !decl.single.valid() && !task.policy.freewheeling;
   if (const ir::PolicyConflict* conflict = ir::policy_conflict(task.policy, periodic)) {

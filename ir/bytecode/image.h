@@ -220,7 +220,7 @@ struct Image {
   uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
   std::vector<Device> devices;
-  std::vector<PouContent> contents;   // by POU; none in images before version 11
+  std::vector<PouContent> contents;  // by POU; none in images before version 11
   base::SharedVector<HeldPart> held;  // sorted, none twice; none in images before version 13
   Schedule schedule = Schedule::kSendFirst;
 

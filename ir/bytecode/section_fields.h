@@ -240,7 +240,8 @@ void section(Archive& a, I& image, uint32_t number, const Beside& beside) {
       });
     default:
       a.list(image.devices, 25, [&](auto& device) { device_fields(a, device); });
-      a.last_list(image.contents, sizeof(PouContent), [&](auto& content) { a(content.identity); });
+      a.last_list(image.contents, sizeof(PouContent),
+                  [&](auto& content) { a(content.identity); });
       return a.last_list(image.held, 9, [&](auto& row) {
         a(row.pou);
         a.enumerator(row.what.kind, 3);

@@ -37,9 +37,9 @@ class Charts {
  private:
   struct Step {
     uint32_t member = 0;
-    uint32_t at = 0;        // in the old version's memory; X is its first byte
-    uint32_t new_at = 0;    // in the new one's, of a step that stays or is new
-    uint32_t next = kNone;  // its member in the new version, or that of the step that takes over
+    uint32_t at = 0;         // in the old version's memory; X is its first byte
+    uint32_t new_at = 0;     // in the new one's, of a step that stays or is new
+    uint32_t next = kNone;   // its member in the new version, or that of the step that takes over
     uint32_t size = 0;
     bool goes = false;
     bool active = false;  // at the switch

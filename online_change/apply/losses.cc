@@ -68,8 +68,8 @@ bool is_constant_already(const ir::Image& old_image, const ir::Symbol& before,
   step.new_type = next.type;
   step.to = next.data;
   base::Bytes converted(initial.size());
-  const char* const loss =
-      Conversions(old_image, new_image).convert(step, 0, memory.data() + before.data, converted);
+  const char* const loss = Conversions(old_image, new_image)
+                               .convert(step, 0, memory.data() + before.data, converted);
   return loss == nullptr && converted == initial;
 }
 

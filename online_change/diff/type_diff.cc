@@ -20,6 +20,7 @@ using ir::TypeId;
 constexpr const char* kBecomesConstant = "constant";
 constexpr const char* kBecomesInput = "an input now";
 
+
 // Members by name; a program may have very many.
 class MemberNames {
  public:

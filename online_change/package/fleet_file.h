@@ -22,7 +22,7 @@ struct FleetFile {
   // boundary.
   std::vector<std::string> steps;
   bool steps_if_needed = false;  // only where there is no room for all at once
-  base::Bytes original;          // encoded images, without sources
+  base::Bytes original;     // encoded images, without sources
   base::Bytes edited;
 };
 

@@ -13,6 +13,7 @@
 namespace online_change {
 namespace {
 
+
 bool is_area(const ir::Image& image, Node node) {
   return image.types[node.type].kind == ir::Kind::kGlobals;
 }
@@ -329,7 +330,8 @@ bool PlanCheck::check_grown_union(Node node) {
   const std::optional<Target> front = first_behind(node.begin);
   const bool copied = front && front->to <= node.begin;
   const uint64_t behind = copied ? front->end() : front->to;
-  const uint32_t from = copied ? source_of(*front) + (node.begin - front->to) : node.begin;
+  const uint32_t from =
+      copied ? source_of(*front) + (node.begin - front->to) : node.begin;
   const std::optional<Node> source = old_areas_.leaf_at(from);
   const uint64_t end = uint64_t{node.begin} + size_of(node);
   const std::optional<Target> rest = first_behind(static_cast<uint32_t>(behind));
@@ -338,7 +340,8 @@ bool PlanCheck::check_grown_union(Node node) {
       (!copied || step_of(*front).kind == StepKind::kCopy) &&
       keeps_union_bytes(old_, source->type, new_, node.type) &&
       behind == uint64_t{node.begin} + old_.layouts[source->type].size && rest &&
-      rest->to <= behind && rest->end() >= end && step_of(*rest).kind == StepKind::kInitialise &&
+      rest->to <= behind && rest->end() >= end &&
+      step_of(*rest).kind == StepKind::kInitialise &&
       is_initialised(static_cast<uint32_t>(behind), static_cast<uint32_t>(end - behind), *rest);
   return right || fail(node.begin, "is written in part only");
 }

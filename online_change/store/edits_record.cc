@@ -70,8 +70,8 @@ std::optional<std::vector<StoredEdit>> decode_edits(base::ByteSpan payload) {
   return edits;
 }
 
-std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits, const base::Digest& boots,
-                                    const base::Digest& trial) {
+std::vector<StoredEdit> way_between(const std::vector<StoredEdit>& edits,
+                                    const base::Digest& boots, const base::Digest& trial) {
   const auto last = std::find_if(edits.rbegin(), edits.rend(),
                                  [&](const StoredEdit& edit) { return edit.to == trial; });
   const auto end = last.base();

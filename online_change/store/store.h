@@ -74,7 +74,7 @@ struct Recovered {
   std::optional<RetainRecord> before;  // `newest` is of a lost trial: those of `boots` before it
   std::optional<base::Digest> trial_lost;  // unless it resumes
   bool resumes = false;
-  std::vector<StoredImage> held;    // what else the slots hold
+  std::vector<StoredImage> held;  // what else the slots hold
   bool virgin = false;              // nothing was ever stored here, as far as anybody can tell
   std::string nothing;              // why there is no `boots`
   std::vector<std::string> alarms;  // what is damaged
@@ -106,7 +106,8 @@ class Store {
   // more: this is an edit that was made on top of it, or one below it. retained_fits() must be true
   // (kStorageFailed), but for an edit below that is still stored.
   // `resumes`: it boots, and stays on trial, as long as the edits that lead to it are kept.
-  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes, bool resumes = false);
+  base::Status begin_trial(const ImageToStore& image, uint64_t retain_bytes,
+                           bool resumes = false);
   base::Status set_resumes(bool resumes);
   // The edits on trial, oldest first. A cut leaves the ones that were kept before, or these.
   base::Status keep_edits(const std::vector<StoredEdit>& edits);

@@ -5,7 +5,10 @@
 #include "online_change/store/store.h"
 
 namespace online_change {
-namespace {}  // namespace
+namespace {
+
+
+}  // namespace
 
 base::Status Store::keep_before(const ImageToStore& image, const base::Digest& next) {
   base::Bytes payload(next.begin(), next.end());

@@ -20,8 +20,8 @@ base::Result<Embedding> Embedding::of(const Project& project) {
   };
   for (uint32_t file = 0; file < project.read_sources; ++file) {
     if (!project.sources.is_source(file)) continue;
-    base::Status added =
-        add(std::string(project.sources.file_name(file)), std::string(project.sources.text(file)));
+    base::Status added = add(std::string(project.sources.file_name(file)),
+                             std::string(project.sources.text(file)));
     if (!added.ok()) return added.error();
   }
   for (const ReadFile& file : project.other_files) {
@@ -35,7 +35,8 @@ base::Result<Embedding> Embedding::of(const Project& project) {
       build.push_back(*path);
     }
   }
-  base::Result<ir::EmbeddedSources> packed = ir::pack_sources(std::move(files), std::move(build));
+  base::Result<ir::EmbeddedSources> packed =
+      ir::pack_sources(std::move(files), std::move(build));
   if (!packed.ok()) return packed.error();
   out.section_ = ir::encode_sources(*packed);
   return out;

@@ -30,7 +30,7 @@ struct PartDifference {
   Differs how = Differs::kEdited;
   std::string before = {};
   std::string after = {};
-  std::string what = {};                  // of a box: its pins that differ
+  std::string what = {};  // of a box: its pins that differ
   std::vector<DifferingLine> lines = {};  // of lines and rungs
 };
 struct UnitDifference {

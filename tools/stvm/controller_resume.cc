@@ -19,8 +19,8 @@ base::Status ControllerService::keep_edits(const Trial* next) {
   std::vector<online_change::StoredEdit> edits;
   const auto add = [&](const Trial& trial) {
     edits.push_back({trial.edit.name, trial.edit.who, trial.edit.time_ns, trial.edit.cycle,
-                     trial.flags, trial.switch_flags, trial.edit.from, trial.edit.to, trial.package,
-                     trial.retained.cycle, trial.retained.values});
+                     trial.flags, trial.switch_flags, trial.edit.from, trial.edit.to,
+                     trial.package, trial.retained.cycle, trial.retained.values});
   };
   for (const Trial& trial : trials_) add(trial);
   if (next != nullptr) add(*next);
@@ -36,12 +36,8 @@ void ControllerService::resume(const std::vector<online_change::ResumedEdit>& ed
         i + 1 < edits.size() ? edits[i + 1].before : controller_.verified();
     adopted = change_.adopt(stored.package, edits[i].before, after, stored.retained);
     if (!adopted.ok()) break;
-    Trial trial{describe(edits[i].before, after, change_.plan()),
-                edits[i].before,
-                stored.package,
-                stored.stage_flags,
-                stored.switch_flags,
-                {}};
+    Trial trial{describe(edits[i].before, after, change_.plan()), edits[i].before,
+                stored.package, stored.stage_flags, stored.switch_flags, {}};
     trial.edit.name = stored.name;
     trial.edit.who = stored.who;
     trial.edit.time_ns = stored.time_ns;

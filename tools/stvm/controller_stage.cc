@@ -71,9 +71,8 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
-  base::Result<base::Bytes> staged =
-      stage_package(std::move(package), request.flags, unless, {},
-                    request.names.size() > 2 ? request.names[2] : "");
+  base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {},
+                                                  request.names.size() > 2 ? request.names[2] : "");
   if (!staged.ok()) return staged;
   staged_digest_ = request.digest;
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;

@@ -84,7 +84,8 @@ TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
 }
 
 base::Result<base::Bytes> ControllerService::units(const vm::Request& request) {
-  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr, previous()));
+  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr,
+                            previous()));
 }
 
 base::Result<base::Bytes> ControllerService::edits(const vm::Request& request) {
@@ -131,17 +132,14 @@ base::Result<base::Bytes> ControllerService::facts(const vm::Request&) {
 // does.
 base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
   if (undone_.empty()) {
-    return base::Error{base::Refusal::kNothingToUndo,
-                       "no edit was undone that could be brought "
-                       "again"};
+    return base::Error{base::Refusal::kNothingToUndo, "no edit was undone that could be brought "
+                                                      "again"};
   }
   const Trial& next = undone_.back();
   if (!request.names.empty() && request.names.front() != next.edit.name) {
-    return base::Error{base::Refusal::kNothingToUndo, "`" + request.names.front() +
-                                                          "` is not the edit that was undone last, "
-                                                          "which is " +
-                                                          next.edit.name +
-                                                          "; `stvm edits` shows them"};
+    return base::Error{base::Refusal::kNothingToUndo,
+                       "`" + request.names.front() + "` is not the edit that was undone last, "
+                       "which is " + next.edit.name + "; `stvm edits` shows them"};
   }
   if (next.edit.from != controller_.verified().digest()) {
     return base::Error{base::Refusal::kStaleBase,

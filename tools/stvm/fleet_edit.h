@@ -13,7 +13,7 @@ struct FleetEdit {
   std::string path;
   base::Digest digest{};
   tools::FleetParts parts;
-  bool matching = false;                // only the units that fit
+  bool matching = false;  // only the units that fit
   std::vector<std::string> steps = {};  // E-25; ir::of_step()
   bool steps_if_needed = false;
 };

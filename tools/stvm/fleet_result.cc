@@ -34,9 +34,10 @@ std::string remark(const FleetRow& row) {
 }  // namespace
 
 std::string_view outcome_name(FleetOutcome outcome) {
-  constexpr std::string_view kNames[] = {"done",        "possible",  "had it",     "refused",
-                                         "unreachable", "cancelled", "not asked",  "reached",
-                                         "undone",      "accepted",  "had it not", "taken back"};
+  constexpr std::string_view kNames[] = {"done",        "possible",  "had it",    "refused",
+                                         "unreachable", "cancelled", "not asked", "reached",
+                                         "undone",      "accepted",  "had it not",
+                                         "taken back"};
   return kNames[static_cast<size_t>(outcome)];
 }
 

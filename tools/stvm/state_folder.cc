@@ -41,14 +41,13 @@ base::Status check_folder(const std::string& path, bool parent) {
   if (::stat(path.c_str(), &info) != 0) return unwritable(path, std::strerror(errno));
   const bool ours = info.st_uid == ::geteuid() || info.st_uid == 0;
   if (!ours) {
-    return unsafe(path,
-                  "it belongs to another user, who could exchange what runs; use another "
-                  "directory, or `chown` it");
+    return unsafe(path, "it belongs to another user, who could exchange what runs; use another "
+                        "directory, or `chown` it");
   }
   const bool by_others = (info.st_mode & (S_IWGRP | S_IWOTH)) != 0;
   if (!by_others || (parent && (info.st_mode & S_ISVTX) != 0)) return base::Ok{};
-  return unsafe(path,
-                "others can write it and could exchange what runs: `chmod go-w " + path + "`");
+  return unsafe(path, "others can write it and could exchange what runs: `chmod go-w " + path +
+                          "`");
 }
 
 base::Status check_folders(std::filesystem::path at) {

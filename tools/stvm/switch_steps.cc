@@ -157,8 +157,8 @@ base::Status check_no_trial(const vm::StatusReport& status) {
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package) {
-  base::Status staged =
-      client.stage(package, options.stage_flags, options.unless, options.note, options.taken_out);
+  base::Status staged = client.stage(package, options.stage_flags, options.unless,
+                                            options.note, options.taken_out);
   if (!staged.ok()) return staged.error();
   return bring_staged(options, client);
 }

@@ -22,7 +22,7 @@ struct SwitchOptions {
   std::string note;           // what the journal says of it (E-33)
   std::string taken_out;      // the edit whose work it takes back
   bool dry_run = false;
-  bool all = false;   // a line for each variable
+  bool all = false;  // a line for each variable
   bool wait = false;  // for the changes of others
   bool ask = true;
   bool json = false;

@@ -149,8 +149,8 @@ base::Result<ExchangePort*> DeviceIo::port_for(const ir::Device& device) {
                        "device `" + device.name + "`: " + driver.error().text};
   }
   ports_.push_back(std::make_unique<ExchangePort>(device, std::move(*driver),
-                                                  options_.virtual_clock == nullptr, options_.log,
-                                                  options_.confined));
+                                                  options_.virtual_clock == nullptr,
+                                                  options_.log, options_.confined));
   return ports_.back().get();
 }
 

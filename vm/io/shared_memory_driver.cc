@@ -172,9 +172,9 @@ base::Result<std::unique_ptr<IoDriver>> make_shared_memory_driver(const ir::Devi
     return base::Error{base::Refusal::kDeviceFailed,
                        "`" + name + "` is no name of shared memory: /press"};
   }
-  return std::unique_ptr<IoDriver>(
-      std::make_unique<SharedMemoryDriver>(name, mode_of(ir::setting(device, "access")),
-                                           ir::number_setting(device, "timeout_ms") * 1'000'000));
+  return std::unique_ptr<IoDriver>(std::make_unique<SharedMemoryDriver>(
+      name, mode_of(ir::setting(device, "access")),
+      ir::number_setting(device, "timeout_ms") * 1'000'000));
 }
 
 }  // namespace vm

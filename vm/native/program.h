@@ -28,9 +28,9 @@ bool is_available();
 
 // How far a Program is that is made while others look.
 struct Progress {
-  std::atomic<bool> stop = false;      // no more POUs: those that are not done are interpreted
+  std::atomic<bool> stop = false;  // no more POUs: those that are not done are interpreted
   std::atomic<bool> unwanted = false;  // with `stop`: nor what is done
-  std::atomic<uint32_t> pous = 0;      // are done
+  std::atomic<uint32_t> pous = 0;  // are done
   std::shared_ptr<const CodeTable> stopped;  // what had been made by then, for another one to share
 };
 

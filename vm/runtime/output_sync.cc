@@ -27,9 +27,7 @@ void clear(std::span<uint8_t> mask) { std::fill(mask.begin(), mask.end(), uint8_
 
 OutputSync::OutputSync(IoBuffer strategy, size_t bytes)
     : strategy_(strategy),
-      count_(has_one_buffer(strategy)       ? 1
-             : strategy == IoBuffer::kThree ? 3
-                                            : 2),
+      count_(has_one_buffer(strategy) ? 1 : strategy == IoBuffer::kThree ? 3 : 2),
       bytes_(bytes),
       storage_(2 * count_ * bytes) {}
 

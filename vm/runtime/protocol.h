@@ -34,11 +34,11 @@ bool changes_state(Command command);
 
 enum SwitchFlags : uint32_t {
   kAllowLoss = 1,
-  kPermanent = 2,       // accept at once
-  kAllowOverrun = 4,    // even if the predicted pause does not fit the tightest task
-  kNoWayBack = 8,       // the controller does not undo it by itself (X7)
+  kPermanent = 2,     // accept at once
+  kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
+  kNoWayBack = 8,     // the controller does not undo it by itself (X7)
   kLastEditBoots = 16,  // after a power loss it runs, on trial, and not what was accepted (D4)
-  kMoreToCome = 32,     // the next edit belongs to it: taken back by the controller, both go (E-26)
+  kMoreToCome = 32,  // the next edit belongs to it: taken back by the controller, both go (E-26)
 };
 
 enum StageFlags : uint32_t {
@@ -82,13 +82,13 @@ struct TrapRow {
 struct StatusReport {
   std::string name;
   base::Digest running{};
-  uint64_t edition = 0;          // counts switches, undos and accepts
-  std::string change;            // state of the change; "idle"
-  uint64_t edits = 0;            // on trial, also while another one is prepared
+  uint64_t edition = 0;     // counts switches, undos and accepts
+  std::string change;       // state of the change; "idle"
+  uint64_t edits = 0;       // on trial, also while another one is prepared
   bool last_edit_boots = false;  // the newest of them, after a power loss too
-  std::string changed_by;        // who staged it
-  std::string aborted;           // when, and by whom or what, if the last one was, while prepared
-  base::Digest previous{};       // during a trial: what undo brings back
+  std::string changed_by;   // who staged it
+  std::string aborted;      // when, and by whom or what, if the last one was, while prepared
+  base::Digest previous{};  // during a trial: what undo brings back
   base::Digest boots_next{};
   base::Digest trial_lost{};        // the program that was on trial when the last process ended
   std::vector<std::string> alarms;  // of what is stored
@@ -102,7 +102,7 @@ struct StatusReport {
   uint64_t pous = 0;
   uint64_t native_pous = 0;  // that run as machine code; 0: everything is interpreted
   uint64_t native_bytes = 0;
-  uint64_t pous_to_make = 0;             // machine code of so many is still being made
+  uint64_t pous_to_make = 0;  // machine code of so many is still being made
   std::vector<std::string> interpreted;  // "POU: why", the first few, where there is machine code
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;
@@ -120,7 +120,7 @@ struct Values {
   // one (vm/runtime/live_copy.h).
   uint64_t cycle = 0;
   uint64_t last_cycle = 0;
-  uint64_t next = 0;  // of lists: where the next page begins; 0: this was the last
+  uint64_t next = 0;   // of lists: where the next page begins; 0: this was the last
   std::vector<ValueRow> rows;
 };
 

@@ -8,8 +8,8 @@
 namespace vm {
 
 enum class TaskState : uint8_t {
-  kWaiting,  // for its next release
-  kDue,      // released; more urgent ones have the processor
+  kWaiting,    // for its next release
+  kDue,        // released; more urgent ones have the processor
   kRunning,
   kSuspended,  // in the middle of its scan, below more urgent ones
   kEndedLate,  // as kWaiting; a release had found the last scan not done

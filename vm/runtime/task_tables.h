@@ -47,11 +47,11 @@ struct TaskSlot {
   bool io_lost = false;         // its next scan begins with a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
   TaskState state = TaskState::kWaiting;
-  bool late = false;     // a release has found it not done
-  bool unsent = false;   // complete outputs of it are in TaskTables::outputs, not sent yet
-  bool held = false;     // complete outputs of it are in its own `outputs`
-  bool lasting = false;  // its code is done, and it lasts until run_ns is scan_ns
-  int64_t scan_ns = 0;   // Clock::scan_ns
+  bool late = false;    // a release has found it not done
+  bool unsent = false;  // complete outputs of it are in TaskTables::outputs, not sent yet
+  bool held = false;    // complete outputs of it are in its own `outputs`
+  bool lasting = false;     // its code is done, and it lasts until run_ns is scan_ns
+  int64_t scan_ns = 0;      // Clock::scan_ns
 
   uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
   bool event_level = false;  // when it was looked at last
@@ -98,8 +98,8 @@ struct TaskTables {
   ProcessImage process_image;
   SharedGlobals shared;
   SafeOutputs safe;
-  base::Bytes inputs;   // as received last in a cycle
-  base::Bytes outputs;  // as sent next in a cycle: complete results only (B5)
+  base::Bytes inputs;        // as received last in a cycle
+  base::Bytes outputs;       // as sent next in a cycle: complete results only (B5)
   // Where tasks exchange by themselves (B12), else empty: as received last and as sent last.
   base::Bytes newest_inputs;
   base::Bytes sent_outputs;

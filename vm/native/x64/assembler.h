@@ -119,7 +119,7 @@ class Assembler {
   void ret();
   void push(uint8_t reg);
   void pop(uint8_t reg);
-  void trap();                              // ud2: is never reached
+  void trap();  // ud2: is never reached
   void table_entry(Label table, Label to);  // 4 bytes: to - table, which is bound
 
   // Floating point of 4 or 8 bytes.
