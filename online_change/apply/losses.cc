@@ -116,7 +116,7 @@ bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,
 LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
                        std::span<const uint8_t> memory) {
   return {output.path, value_text(old_image, output.symbol, memory), "",
-          "is not written by any code any more (" + ir::address_text(output.address) +
+          "is no longer written (" + ir::address_text(output.address) +
               ") and keeps its value"};
 }
 

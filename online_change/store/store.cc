@@ -111,7 +111,8 @@ void Store::reject_boots() {
 
 base::Status Store::write_control(const ControlRecord& next) {
   base::check(next.slot < kImageSlots && next.trial_slot < kImageSlots, "a slot is one of three");
-  base::check(next.slot != next.trial_slot, "what boots and what is on trial lie in two slots");
+  base::check(!next.trial || next.slot != next.trial_slot,
+              "what boots and what is on trial lie in two slots");
   base::dcheck(!in_slot_[next.slot] || in_slot_[next.slot] == next.boots,
                "what boots is in the slot that the control record names");
   base::dcheck(

@@ -45,7 +45,7 @@ for way in full closed; do
     $way $command || code=$?
     [ "$code" -eq 74 ] || fail "$way: exit code $code instead of 74: $command"
     grep -q ': standard output could not be written' err || fail "$way: not said: $command"
-    grep -q '  help: what was done is done' err || fail "$way: no way out: $command"
+    grep -q '  help: the command has done its work' err || fail "$way: no way out: $command"
   done
   code=0
   $way stc check bad.st --format json || code=$?

@@ -103,7 +103,7 @@ expect 0 stvm undo --dir three --yes
 expect 0 stvm fleet change x.fleet --dir one --dir two --yes --allow-overrun --jobs 2
 said '^(one|two): done$'
 expect 2 stvm fleet change x.fleet "$@" --jobs 2
-said 'jobs asks nobody'
+said 'jobs cannot ask about each controller; pass --yes'
 expect 2 stvm fleet change x.fleet "$@" --jobs 2 --one-by-one --yes
 expect 2 stvm fleet change x.fleet "$@" --jobs 0 --yes
 expect 0 stvm fleet accept x.fleet "$@" --yes

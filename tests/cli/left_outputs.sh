@@ -12,16 +12,16 @@ ST
 # A rung goes.
 sed 's/lamp := TRUE; //; s/ dark := FALSE;//; s/ row\[2\] := 5;//' v1.st >v2.st
 expect 0 stc diff v1.st v2.st
-said '^output +%QX0.0  \(`lamp` is not written by any code any more\)$'
-said '^output +%QX0.2  \(`dark` is not written by any code any more\)$'
-said '^output +%QB22  \(`row\[2\]` is not written by any code any more\)$'
+said '^output +%QX0.0  \(`lamp` is no longer written by any code\)$'
+said '^output +%QX0.2  \(`dark` is no longer written by any code\)$'
+said '^output +%QB22  \(`row\[2\]` is no longer written by any code\)$'
 [ "$(grep -c '^output' out)" = 3 ] || fail "more is told than was left"
 serve plc v1.st
 wait_for '=TRUE' stvm get lamp --dir plc
 expect 7 stvm change v2.st --dir plc --yes
 said 'R0303: 2 live value'
-said 'lamp +TRUE +is not written by any code any more \(%QX0.0\) and keeps its value'
-said 'row\[2\] +16#05 +is not written by any code any more \(%QB22\) and keeps its value'
+said 'lamp +TRUE +is no longer written \(%QX0.0\) and keeps its value'
+said 'row\[2\] +16#05 +is no longer written \(%QB22\) and keeps its value'
 expect 7 stvm change v2.st --dir plc --dry-run --format json
 said '"loss_count": *2'
 # What is off already can be left.

@@ -52,7 +52,7 @@ expect 1 stc test long_test.st --timeout 4990 --format junit
 said 'errors="1"'
 said 'error type="fuel"'
 expect 2 stc test long_test.st --timeout 0
-said '1 is the least'
+said 'no test could run; the least is 1'
 expect 2 stc test long_test.st --timeout soon
 
 # --watch: again at each save, what failed first.

@@ -11,7 +11,7 @@ SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_im
   const ir::OldUnderNewNames old(old_image, new_image);
   for (const vm::LeftOutput& output : vm::left_outputs(old.image(), new_image)) {
     edits.push_back({"output", ir::address_text(output.address),
-                     "`" + output.path + "` is not written by any code any more"});
+                     "`" + output.path + "` is no longer written by any code"});
   }
   return edits;
 }
