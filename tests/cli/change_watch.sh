@@ -132,7 +132,7 @@ running undone.img
 sed 's/Cycles + 5/Cycles + 50/' plant/main.st | save plant/main.st
 until_said 2 'waiting: the last change, by .*, is still on trial'
 expect 0 stvm undo --dir plc
-until_said 1 'undone: what was saved meanwhile is left'
+until_said 1 'undone: what was saved meanwhile is not brought'
 running left.img
 expect 0 stvm status --dir plc
 if grep -q 'on trial' out; then fail "brought what was made on top of what was undone"; fi

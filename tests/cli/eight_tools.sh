@@ -20,7 +20,7 @@ won=$(cat code.? | grep -c '^0$' || true)
 [ "$won" = 1 ] || fail "$won of eight won: $(cat code.?)"
 for i in 1 2 3 4 5 6 7 8; do
   [ "$(cat "code.$i")" = 0 ] && continue
-  grep -qE "R0301.*made by |R0302.*(, by |brings)" "err.$i" || fail "not told who: $(cat "err.$i")"
+  grep -qE "R0301.*made by |R0302.*(, by |is bringing)" "err.$i" || fail "not told who: $(cat "err.$i")"
 done
 [ "$(switches)" = 1 ] || fail "$(switches) switches"
 expect 0 stvm undo --dir plc

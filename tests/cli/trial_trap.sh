@@ -114,4 +114,4 @@ expect 0 stvm revert --dry-run --dir plc
 said 'code +Main'
 dd if=/dev/zero of=plc/before bs=1 seek=900 count=64 conv=notrunc 2>/dev/null
 expect 7 stvm revert --yes --dir plc
-said 'R0409.*version before'
+said 'R0409.*earlier version'
