@@ -29,6 +29,11 @@ enum class Command : uint8_t {
 #include "vm/runtime/commands.def"
 #undef COMMAND
 };
+inline constexpr uint8_t kCommandCount = 0
+#define COMMAND(id, name, handler, body, changes_state, meaning) +1
+#include "vm/runtime/commands.def"
+#undef COMMAND
+    ;
 const char* command_name(Command command);
 bool changes_state(Command command);
 

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Request> samples() {
   std::vector<Request> out;
-  for (uint8_t i = 0; i <= static_cast<uint8_t>(Command::kFacts); ++i) {
+  for (uint8_t i = 0; i < vm::kCommandCount; ++i) {
     Request request{.command = static_cast<Command>(i)};
     request.expected[3] = 7;
     request.edition = 42;
