@@ -28,6 +28,7 @@ ir::Image image_of_scalars() {
     layouts.of[type.index].size = ir::scalar_size(image.types.scalar(type));
   }
   image.layouts = std::move(layouts);
+  image.data_capacity = 2 * kValues * kApart;
   return image;
 }
 

@@ -45,8 +45,7 @@ bool without_gaps(const UpdateStep& step) {
 
 Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to, Steps which)
     : plan_(plan), conversions_(from, to) {
-  base::dcheck([&] { return broken_promise(plan, from, to) == nullptr; },
-               "a transfer gets a plan that keeps its promises");
+  expect_promises(plan, from, to);
   size_t bytes = 0;
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];

@@ -67,8 +67,7 @@ base::Result<Plan> Planner::run() {
     if (!step.early) plan_.boundary_bytes += step.total();
   }
   plan_.predicted_pause_ns = predicted_pause_ns(plan_, old_, new_);
-  base::dcheck([&] { return broken_promise(plan_, old_, new_) == nullptr; },
-               "the planner keeps what a plan promises");
+  expect_promises(plan_, old_, new_);
   return std::move(plan_);
 }
 
