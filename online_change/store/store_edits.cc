@@ -2,10 +2,14 @@
 // a list that is newer or older than it leads to what it names all the same.
 #include "online_change/store/store.h"
 
+#include "base/check.h"
+
 namespace online_change {
 
 base::Status Store::keep_edits(const std::vector<StoredEdit>& edits) {
   const base::Bytes payload = encode(edits);
+  base::dcheck([&] { return decode_edits(payload).has_value(); },
+               "a list of edits is read as it was written");
   std::lock_guard lock(before_mutex_);
   return replace_record(storage_, kEditsFile, RecordKind::kEdits, 1, payload,
                         record_bytes(payload.size()));
