@@ -50,9 +50,26 @@ Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vect
     case FunctionRule::kMux:
     case FunctionRule::kExtreme:
       return is_small(sema, note) && has_wide(sema, args) ? Width::kWide : Width::kOwn;
-    default:
+    case FunctionRule::kReal:
+    case FunctionRule::kTrunc:
+    case FunctionRule::kShift:
+    case FunctionRule::kNot:
+    case FunctionRule::kCompare:
+    case FunctionRule::kString:
+    case FunctionRule::kStringNumber:
+    case FunctionRule::kClock:
+    case FunctionRule::kTimeSum:
+    case FunctionRule::kTimeDifference:
+    case FunctionRule::kTimeProduct:
+    case FunctionRule::kTimeQuotient:
+    case FunctionRule::kMoment:
+    case FunctionRule::kSplit:
+    case FunctionRule::kWeekday:
+    case FunctionRule::kByteOrder:
+    case FunctionRule::kValid:
       return Width::kOwn;
   }
+  return Width::kOwn;
 }
 
 bool has_wide(Sema& sema, const std::vector<ExprId>& operands) {
