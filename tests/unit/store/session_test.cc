@@ -72,7 +72,7 @@ TEST_F(Session, OneUploadAtATime) {
   EXPECT_TRUE(upload(1, 0, 100).ok());
   const base::Error others = upload(2, 100, 100).error();  // case79: told whose
   EXPECT_EQ(others.refusal, Refusal::kChangePending);
-  EXPECT_NE(others.text.find("tester brings another change"), std::string::npos) << others.text;
+  EXPECT_NE(others.text.find("tester is bringing another change"), std::string::npos) << others.text;
   EXPECT_TRUE(upload(2, 0, 100).ok());
   EXPECT_FALSE(upload(1, 100, 100).ok()) << "the newer one has ended it";
   EXPECT_FALSE(upload(2, 300, 100).ok()) << "a part is missing";
