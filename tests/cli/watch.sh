@@ -186,7 +186,7 @@ lines() { grep -vc '^watched.img' watch.log; }
 held() {
   before=$(lines)
   said_of_watch $((holds += 1)) '^waiting'
-  tail -1 watch.log | grep -q "^waiting with what was saved: plant/$2 " ||
+  tail -1 watch.log | grep -q "^waiting with what was saved: plant/$2" ||
     fail "held back, and not by $2: $1: $(tail -3 watch.log)"
   [ "$(lines)" -eq $((2 * holds)) ] || fail "built in between: $1: $(tail -3 watch.log)"
 }
