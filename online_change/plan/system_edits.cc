@@ -96,7 +96,7 @@ class SystemEdits {
       std::string what = from_to(ir::address_text(binding->address),
                                  now == nullptr ? "no address" : ir::address_text(now->address));
       if (is_left(*binding, outputs)) {
-        what += "; nobody writes " + ir::address_text(binding->address) + " any more";
+        what += "; " + ir::address_text(binding->address) + " is no longer written by any code";
       }
       add("variable", path, std::move(what));
     }

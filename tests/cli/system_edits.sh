@@ -46,10 +46,10 @@ chart Seq (Idle -> (Fill, Stir) new)
 variable r (now RETAIN)
 variable k (no longer CONSTANT)
 variable in1 (%IX0.0 -> %IX3.3)
-variable out1 (%QX0.0 -> %QX7.7; nobody writes %QX0.0 any more)
-variable out2 (%QX0.1 -> no address; nobody writes %QX0.1 any more)
+variable out1 (%QX0.0 -> %QX7.7; %QX0.0 is no longer written by any code)
+variable out2 (%QX0.1 -> no address; %QX0.1 is no longer written by any code)
 variable x (%QB52 -> %QB30)
-variable y (%QB24 -> %QB31; nobody writes %QB24 any more)
+variable y (%QB24 -> %QB31; %QB24 is no longer written by any code)
 variable plain (no address -> %QW10)
 resource C (schedule send_first -> run_first)
 task A (interval T#10ms -> T#5ms)
@@ -116,5 +116,5 @@ configured g1 %IW8 %QX1.2
 configured g2 %IW9 %QX5.3
 expect 0 stc diff g1 g2
 said '^variable +P.one.in  \(%IW8 -> %IW9\)$'
-said '^variable +P.l.d\[2\].lamp  \(%QX1.2 -> %QX5.3; nobody writes %QX1.2 any more\)$'
+said '^variable +P.l.d\[2\].lamp  \(%QX1.2 -> %QX5.3; %QX1.2 is no longer written by any code\)$'
 [ "$(grep -c '^variable' out)" = 2 ] || fail "more is told than moves"

@@ -99,5 +99,5 @@ def left_outputs(old, new, before):
         now = outputs.get(bits_at(one.address)) if one.address.startswith('%Q') else None
         if one.address.startswith('%Q') and one.written and not (now and now.written):
             # Without any variable it takes its safe value; with one it stays as it is.
-            yield Row('output', one.address, ('nobody',),
+            yield Row('output', one.address, ('no longer written',),
                       live=now.name if now and before[one.name] else '')

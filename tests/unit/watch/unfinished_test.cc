@@ -94,7 +94,7 @@ TEST(Unfinished, WhoIsHeldBackIsToldOnceByWhichFile) {
   }
   EXPECT_EQ(look.told,
             "waiting with what was saved: b.st is being written; until it is closed, or for 10 s "
-            "behind its last write\n");
+            "after its last write\n");
 }
 
 }  // namespace
