@@ -28,7 +28,7 @@ awk -v most="$most" '
     for (object in objects) { count++; alone += std[object] }
     printf "%d units of the product, %d lines of the project; %d parse the standard library\n",
            count, total, alone
-    if (count < 100) { print "which units are there?"; exit 1 }
+    if (count < 60) { print "which units are there?"; exit 1 }
     if (total > most) { printf "more than %d lines: lighter includes, please\n", most; exit 1 }
     if (alone > 5) { print "more than 5 units without precompiled headers"; exit 1 }
   }' "$work/lines" "$work/deps"
