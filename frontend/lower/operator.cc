@@ -83,10 +83,9 @@ ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   Note common = sema_.unify(sema_.infer(left), sema_.infer(right), tree_[left].span);
   if (!common.type.valid()) return zero(elementary(ir::Kind::kBool));
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
-  const bool wide = is_small(sema_, common) && has_wide(sema_, {left, right});
-  if (wide) common.type = elementary(ir::Kind::kDint);
-  ir::ValueId a = wide ? computed_in(left, common.type) : value(left, common.type);
-  ir::ValueId b = wide ? computed_in(right, common.type) : value(right, common.type);
+  common.type = compared_type(sema_, common.type, {left, right});
+  ir::ValueId a = value(left, common.type);
+  ir::ValueId b = value(right, common.type);
   const bool equality = op == BinaryOp::kEq || op == BinaryOp::kNe;
   const bool known = sema_.infer(left).constant || sema_.infer(right).constant;
   if (types().is_reference(common.type) && equality && known) {  // with NULL

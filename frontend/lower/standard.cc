@@ -206,17 +206,14 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common) {
   if (!common.valid()) return zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
-  Note meeting;
-  meeting.type = common;
-  const bool wide = is_small(sema_, meeting) && has_wide(sema_, args);
-  if (wide) common = elementary(ir::Kind::kDint);
+  common = compared_type(sema_, common, args);
   ir::ValueList values;
   std::vector<ir::Place> places;
   for (ExprId arg : args) {
     if (text) {
       places.push_back(place(arg));
     } else {
-      values.push_back(wide ? computed_in(arg, common) : value(arg, common));
+      values.push_back(value(arg, common));
     }
   }
   ir::ValueId all;

@@ -1,6 +1,7 @@
 // Assertions and the other calls of tests. A failed assertion leaves its message in a global
 // and traps, which ends the test; stc test shows both.
 #include "frontend/lower/body.h"
+#include "frontend/sema/width.h"
 
 namespace frontend {
 namespace {
@@ -131,11 +132,12 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
                 "compare its members or elements");
     return;
   } else {
-    const Typed a{value(args[0], common.type), common.type};
-    const Typed b{value(args[1], common.type), common.type};
+    const ir::TypeId type = compared_type(sema_, common.type, {args[0], args[1]});
+    const Typed a{value(args[0], type), type};
+    const Typed b{value(args[1], type), type};
     actual = [this, a] { return text_of(a); };
     expected = [this, b] { return text_of(b); };
-    holds = compare_scalars(relation.op, common.type, a.value, b.value);
+    holds = compare_scalars(relation.op, type, a.value, b.value);
   }
   fail_unless(holds, message, [&] {
     ir::Place text = joined(constant_text(std::string("expected ") + relation.wanted), expected());

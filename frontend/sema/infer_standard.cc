@@ -93,7 +93,6 @@ Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
   note.variable = {};
   note.progress = Progress::kNew;
   mark_enabled(expr, note);
-  if (note.known == Known::kNo && all.known != Known::kNo) note.width = Width::kOwn;  // EN, ENO
   return note;
 }
 

@@ -77,6 +77,13 @@ bool has_wide(Sema& sema, const std::vector<ExprId>& operands) {
                      [&](ExprId id) { return sema.infer(id).width == Width::kWide; });
 }
 
+ir::TypeId compared_type(Sema& sema, ir::TypeId common, const std::vector<ExprId>& operands) {
+  Note meeting;
+  meeting.type = common;
+  const bool wide = is_small(sema, meeting) && has_wide(sema, operands);
+  return wide ? sema.program.types.elementary(ir::Kind::kDint) : common;
+}
+
 Note widened_by(const Sema& sema, Note note, ExprId operand) {
   const Expr& expr = sema.tree[operand];
   if (note.width != Width::kWide || expr.kind != ExprKind::kLiteral) return note;

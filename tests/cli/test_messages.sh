@@ -77,3 +77,7 @@ echo 'PROGRAM q ADVANCE_TIME(T#1s); Main.n := 5; END_PROGRAM' >q.st
 expect 1 stc check pump.st q.st
 said 'E8002.*is for tests only'
 said 'E2004.*`n` is private to `Main`'
+
+# Assertions compare as expressions do: what is computed below 32 bits is a DINT (docs/LANGUAGE.md).
+wrong "TEST 'a' VAR a : INT := 20000; END_VAR ASSERT_EQ(a * 3, a); END_TEST" \
+  'expected 20000, got 60000'
