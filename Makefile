@@ -115,6 +115,7 @@ bench-pause: setup
 	@cmake --preset release >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target bench_pause
 	@$(BUILD)/bench/bench_pause --out docs/pause --machine "$(MACHINE)"
+	@python3 scripts/wrap_pages.py docs/pause.md
 
 FUZZ_RUNS := 1000000
 fuzz: setup

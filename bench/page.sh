@@ -30,5 +30,6 @@ section() {  # section FILE TITLE COMMAND
   section start.md 'Size and start' 'make bench'
   section force.md 'Forcing' 'make bench'
 } | cat -s | sed '$d' >"$docs/performance.md"
+python3 "$(dirname "$0")/../scripts/wrap_pages.py" "$docs/performance.md"
 cp "$sections/performance.svg" "$docs/performance.svg"
 echo "wrote $docs/performance.md and performance.svg"

@@ -13,7 +13,7 @@ namespace {
 bool divides(BinaryOp op) { return op == BinaryOp::kDiv || op == BinaryOp::kMod; }
 
 // Has a quotient in `type` the bits that the one of DINTs has, in `machine`? The most negative
-// number through -1 is itself in its own width.
+// number divided by -1 is itself in its own width.
 bool divides_in(Sema& sema, const Expr& expr, ir::TypeId type, ir::Scalar machine) {
   const ir::TypeTable& types = sema.program.types;
   const auto own = [&](ExprId id) {

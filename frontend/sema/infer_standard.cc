@@ -167,6 +167,8 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
     }
     case FunctionRule::kArithmetic:
     case FunctionRule::kBitwise: {
+      const BinaryOp op = standard_operator(row.id);
+      if (op == BinaryOp::kDiv || op == BinaryOp::kMod) check_wrapped(*this, args[0], "divided");
       Note note = argument(0);
       for (uint32_t i = 1; i < args.size() && note.type.valid(); ++i) {
         note = row.rule == FunctionRule::kArithmetic
@@ -199,6 +201,7 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return !note.type.valid() || ordered ? note : refuse(note);
     }
     case FunctionRule::kCompare: {
+      for (const ExprId arg : args) check_wrapped(*this, arg, "compared");
       Note common = unify_arguments(args, 0);
       return infer_comparison(standard_operator(row.id), common, common, expr.span);
     }

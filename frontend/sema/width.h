@@ -12,7 +12,7 @@ namespace frontend {
 
 // An integer or a bit string below 32 bits?
 bool is_small(const Sema& sema, const Note& note);
-// Of the result of an operator whose type is the note's. `can_grow`: it may leave that type.
+// The width of an operator's result, whose type is the note's. `can_grow`: it may leave that type.
 Width width_of(const Sema& sema, const Note& note, bool can_grow);
 // The type that code computes the expression in.
 ir::TypeId computed_type(const Sema& sema, const Note& note);
@@ -20,8 +20,8 @@ ir::TypeId computed_type(const Sema& sema, const Note& note);
 // most negative number divided by -1.
 Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& left,
                     const Note& right);
-// Of what a standard function gives whose result is `note`. Those that CODESYS calls operators
-// (ADD, MAX, SEL, ABS, ...) compute as operators do; arguments of the others are passed.
+// The width of a standard function's result. Functions that CODESYS calls operators (ADD, MAX, SEL,
+// ABS, ...) compute as operators do; arguments of all others are passed, which cuts them.
 Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vector<ExprId>& args,
                      const Note& note, bool typed);
 // What operands that have a type in common are compared in: DINT where one of them is wide.
@@ -31,8 +31,8 @@ bool has_wide(Sema& sema, const std::vector<ExprId>& operands);
 // A literal that does not fit the type of the other operand gives the operation its own type: DINT,
 // or a longer one.
 Note widened_by(const Sema& sema, Note note, ExprId operand);
-// Is an index that wraps in its own type outside of these bounds then? `i + 1`, `i - 1`: then there
-// is no need for a wide one, which traps in the same cases.
+// `a[i + 1]`: is an index that wraps in its own type out of bounds then? A wide index is out of
+// bounds in the same cases, so the small one will do. The text of the trap has the wrapped number.
 bool wraps_outside(const Sema& sema, const Note& note, const Expr& index, const Note& left,
                    Limits bounds);
 // The low bits that `target` has room for, where `value` is an intermediate result that is stored
