@@ -115,9 +115,9 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   return {};
 }
 
-// The accessor's result, or what it is given; it has the property's name.
 VarId Objects::value_of(const PouInfo& accessor) const {
-  return accessor.names.find(accessor.decl->name.text)->second;
+  const auto value = accessor.names.find(accessor.decl->name.text);
+  return value == accessor.names.end() ? VarId() : value->second;
 }
 
 // Read or written: lowering knows which, and checks that there is GET or SET.
@@ -126,11 +126,13 @@ Note Objects::infer_property(const Name& name, const Found& found) {
   if (!readable && found.code.setter == kNoPou) return {};  // said where it is declared
   const PouInfo& accessor = sema_.pous[readable ? found.code.getter : found.code.setter];
   if (!check_access(accessor, name)) return {};
+  const VarId value = value_of(accessor);
+  if (!value.valid()) return {};  // said where it is declared
   Note note;
   note.property = found.owner;
   note.calls = true;
   note.can_trap = true;
-  note.type = sema_.resolve(value_of(accessor)).type;
+  note.type = sema_.resolve(value).type;
   return note;
 }
 

@@ -76,6 +76,7 @@ class Objects {
   Callee itself(const Expr& head);     // a function or method inside of itself
   Note infer_member(const Expr& expr, uint32_t owner, Note note);
   Note infer_property(const Name& name, const Found& found);
+  // What an accessor gives, or is given: it has the property's name. Invalid: it has no type.
   VarId value_of(const PouInfo& accessor) const;
 
   // --- FB_Init, FB_Exit, FB_Reinit (start.cc)
