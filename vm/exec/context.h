@@ -80,7 +80,6 @@ struct Context {
   uint8_t* memory = nullptr;
   const uint8_t* consts = nullptr;
   void* native_stack = nullptr;  // of the machine, where native code was entered
-  uint64_t native_scratch[2] = {0, 0};
   const BoundEntry* bounds = nullptr;
   const RangeEntry* ranges = nullptr;
   int64_t task_time_ns = 0;

@@ -14,13 +14,11 @@ namespace vm::native::host {
 using arm64::Assembler;
 using arm64::emit_shared;
 using arm64::Emitter;
-using arm64::Shared;
 using HostTarget = arm64::Arm64Target;
 #else
 using x64::Assembler;
 using x64::emit_shared;
 using x64::Emitter;
-using x64::Shared;
 using HostTarget = x64::X64Target;
 #endif
 

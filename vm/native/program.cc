@@ -151,7 +151,7 @@ bool prepare(const ir::Image& image, const TierOptions& options, const Target& t
   return true;
 }
 
-Emitted emit(Work& work, const TierOptions& options, const host::Shared& shared,
+Emitted emit(Work& work, const TierOptions& options, const Shared& shared,
              host::Assembler& assembler) {
   const PouCode code{&work.function, &work.places,  &work.pou->side,   work.pou->units,
                      work.number,    options.plain, options.table_ways};
@@ -258,7 +258,7 @@ void leave_out_rest(const Job& job, const ImageFacts& common, PouNatives& made) 
 }
 
 // Machine code of all POUs but those whose running code is still right.
-std::vector<Emitted> emit_all(const Job& job, const host::Shared& shared,
+std::vector<Emitted> emit_all(const Job& job, const Shared& shared,
                               host::Assembler& assembler, PouNatives& made) {
   const size_t shared_labels = assembler.labels();
   const ImageFacts common(job.image, job.clean_bools, job.versions);
@@ -325,7 +325,7 @@ std::shared_ptr<const Program> Program::make(const ir::Image& image, bool clean_
   const auto made = std::make_shared<Program>(Key());
   host::Assembler assembler;
   base::check(pous.size() == image.pous.size(), "each POU of an image has an entry");
-  const host::Shared shared = host::emit_shared(assembler);
+  const Shared shared = host::emit_shared(assembler);
   const std::vector<Emitted> all =
       emit_all({image, clean_bools, pous, options, running == nullptr ? nullptr : &running->pous_,
                 versions, progress, running_image},

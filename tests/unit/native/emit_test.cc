@@ -89,7 +89,7 @@ Function forks_where_the_frame_says(uint32_t count, uint8_t width) {
   return f;
 }
 
-template <class Assembler, class Emitter, class Shared, class HostTarget>
+template <class Assembler, class Emitter, class HostTarget>
 uint32_t emit(const Function& f, Assembler& a, Shared& shared) {
   const HostTarget target;
   const base::Result<Allocated> places = allocate(f, target, {});
@@ -107,7 +107,7 @@ class Native {
   explicit Native(const Function& function) {
     shared_ = host::emit_shared(a_);
     begin_ =
-        emit<host::Assembler, host::Emitter, host::Shared, host::HostTarget>(function, a_, shared_);
+        emit<host::Assembler, host::Emitter, host::HostTarget>(function, a_, shared_);
     code_ = CodeMemory::make(a_.code());
   }
   // The unit where it left; kNone: it returned.
@@ -131,7 +131,7 @@ class Native {
 
  private:
   host::Assembler a_;
-  host::Shared shared_{};
+  Shared shared_{};
   uint32_t begin_ = 0;
   std::shared_ptr<const CodeMemory> code_;
   CallRecord record_{};
@@ -181,9 +181,9 @@ TEST(Emit, ManyWaysAreOneJumpThroughATable) {
 TEST(Emit, OnlyLargeFunctionsHaveLongBranches) {
   const auto bytes = [](uint32_t count) {
     arm64::Assembler a;
-    arm64::Shared shared = arm64::emit_shared(a);
+    Shared shared = arm64::emit_shared(a);
     const size_t before = a.code().size();
-    emit<arm64::Assembler, arm64::Emitter, arm64::Shared, arm64::Arm64Target>(
+    emit<arm64::Assembler, arm64::Emitter, arm64::Arm64Target>(
         leaves_where_the_frame_says(count), a, shared);
     return (a.code().size() - before) / count;
   };

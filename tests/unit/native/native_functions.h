@@ -101,7 +101,7 @@ class NativeFunctions {
 
  private:
   host::Assembler a_;
-  host::Shared shared_;
+  Shared shared_;
   bool folds_;
   std::vector<uint32_t> begins_;
   std::shared_ptr<const CodeMemory> code_;

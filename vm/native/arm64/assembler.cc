@@ -20,15 +20,10 @@ void Assembler::word(uint32_t w) {
 
 // --- labels -------------------------------------------------------------------------
 
-Label Assembler::label() {
-  labels_.push_back(0xffffffffu);
-  return static_cast<Label>(labels_.size() - 1);
-}
-
 bool Assembler::reaches(const Mark& since) const {
   for (size_t i = since.fixups; i < fixups_.size(); ++i) {
     const Fixup& fixup = fixups_[i];
-    const int64_t far = signed_distance(fixup.at, labels_[fixup.to]);
+    const int64_t far = signed_distance(fixup.at, offset_of(fixup.to));
     if (fixup.reach == Reach::kPage || fixup.reach == Reach::kDistance) continue;
     const int64_t most = int64_t{1} << (fixup.reach == Reach::kJump ? 27 : 20);
     if (far < -most || far >= most) return false;
@@ -38,13 +33,13 @@ bool Assembler::reaches(const Mark& since) const {
 
 void Assembler::rewind(const Mark& to) {
   code_.resize(to.code);
-  labels_.resize(to.labels);
+  forget_labels(to.labels);
   fixups_.resize(to.fixups);
 }
 
 void Assembler::patch() {
   for (const Fixup& fixup : fixups_) {
-    const uint32_t to = labels_[fixup.to];
+    const uint32_t to = offset_of(fixup.to);
     uint32_t w[2] = {};
     std::memcpy(w, &code_[fixup.at], fixup.reach == Reach::kPage ? 8 : 4);
     switch (fixup.reach) {
@@ -88,7 +83,7 @@ void Assembler::jump_long(Label to) {
   jump_to(kAddressScratch);
 }
 void Assembler::table_entry(Label table, Label to) {
-  const uint32_t behind_table = here() - labels_[table];
+  const uint32_t behind_table = here() - offset_of(table);
   branch(behind_table, to, Reach::kDistance);
 }
 void Assembler::jump_if(Condition condition, Label to) {

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vm/native/code_buffer.h"
+
 namespace vm::native::arm64 {
 
 inline constexpr uint8_t kZero = 31;
@@ -86,28 +88,16 @@ enum class FloatUnary : uint32_t {
   kSqrt = 0x1e21c000
 };
 
-using Label = uint32_t;
-
-class Assembler {
+class Assembler : public CodeBuffer {
  public:
-  const std::vector<uint8_t>& code() const { return code_; }
-  void reserve(size_t bytes) { code_.reserve(bytes); }
-  uint32_t here() const { return static_cast<uint32_t>(code_.size()); }
-
-  Label label();
-  void bind(Label label) { labels_[label] = here(); }
-  uint32_t offset_of(Label label) const { return labels_[label]; }
   // Jumps so far get their distances: their labels are bound.
   void patch();
-  size_t labels() const { return labels_.size(); }
-  // For patched code: labels from number `first` on are given out anew.
-  void forget_labels(size_t first) { labels_.resize(first); }
 
   // Short branches reach 1 MiB. What does not is made anew, with long ones (4 GiB).
   struct Mark {
     size_t code, labels, fixups;
   };
-  Mark mark() const { return {code_.size(), labels_.size(), fixups_.size()}; }
+  Mark mark() const { return {code_.size(), labels(), fixups_.size()}; }
   bool reaches(const Mark& since) const;  // all labels used since then are bound
   void rewind(const Mark& to);
   void set_long(bool is_long) { long_ = is_long; }
@@ -182,8 +172,6 @@ class Assembler {
   Address simple(const Address& at, uint8_t width);
   void branch(uint32_t op, Label to, Reach reach);
 
-  std::vector<uint8_t> code_;
-  std::vector<uint32_t> labels_;
   std::vector<Fixup> fixups_;
   bool long_ = false;
 };

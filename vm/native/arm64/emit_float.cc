@@ -76,7 +76,7 @@ void Emitter::floating(const Node& n, const Step& step) {
       return;
     }
     case Op::kFSelect:
-      test_bool(integer_register(a));
+      ask_bool(integer_register(a));
       return a_.float_select(Condition::kNotEqual, to(), float_register(step.in[1]),
                              float_register(step.in[2]));
     case Op::kIntToFloat:
@@ -104,7 +104,7 @@ void Emitter::settle_nan(uint8_t result, uint8_t a, uint8_t b, uint8_t width) {
   nan_stubs_.push_back(stub);
 }
 
-void Emitter::nan_stubs() {
+void Emitter::own_stubs() {
   for (const NanStub& stub : nan_stubs_) {
     const Label not_a = a_.label();
     a_.bind(stub.label);

@@ -13,6 +13,13 @@ namespace {
 
 uint8_t at_least_four(uint8_t width) { return width < 4 ? uint8_t{4} : width; }
 
+Alu alu_of(Op op) {
+  if (op == Op::kAdd) return Alu::kAdd;
+  if (op == Op::kSub) return Alu::kSub;
+  if (op == Op::kAnd) return Alu::kAnd;
+  return op == Op::kOr ? Alu::kOr : Alu::kXor;
+}
+
 Logical logical_of(Alu op) {
   if (op == Alu::kAnd) return Logical::kAnd;
   return op == Alu::kOr ? Logical::kOr : Logical::kXor;
@@ -20,144 +27,34 @@ Logical logical_of(Alu op) {
 
 }  // namespace
 
-void Emitter::node(const Step& step) {
-  const Node& n = f_.nodes[step.node];
-  switch (n.op) {
-    case Op::kConst:
-      return;
-    case Op::kLoad:
-      return load(n, step);
-    case Op::kStore:
-      return store(n, step);
-    case Op::kAddr:
-      return data_address(n, step);
-    case Op::kPlace:
-      return a_.address(integer_register(step.result), address(n.mem, step.index, step.pointer), 8);
-    case Op::kExitIf:
-      return jump_if(n.width, n.cond, step.in[0], step.in[1], exit_label(n.exit));
-    case Op::kInstance:
-      return instance(n, step);
-    case Op::kTaskTime:
-      return a_.load(integer_register(step.result), CONTEXT(task_time_ns), 8);
-    case Op::kAdvanceTime:
-      a_.load(kScratch, CONTEXT(task_time_ns), 8);
-      a_.alu(Alu::kAdd, kScratch, kScratch, integer_register(step.in[0]), 8);
-      return a_.store(CONTEXT(task_time_ns), kScratch, 8);
-    case Op::kPool:
-      return pool(step);
-    case Op::kNative:
-      return native(n);
-    case Op::kHelper:
-      return helper(n, step);
-    case Op::kCall:
-      return call(n);
-    case Op::kEnter:
-      return enter(n, step);
-    case Op::kFCompare:
-      return float_compare(n, step);
-    case Op::kFAdd:
-    case Op::kFSub:
-    case Op::kFMul:
-    case Op::kFDiv:
-    case Op::kFMin:
-    case Op::kFMax:
-    case Op::kFNeg:
-    case Op::kFAbs:
-    case Op::kFSqrt:
-    case Op::kFSelect:
-    case Op::kIntToFloat:
-    case Op::kFloatToInt:
-    case Op::kFloatWidth:
-    case Op::kBitsToFloat:
-    case Op::kFloatToBits:
-      return floating(n, step);
-    case Op::kAdd:
-    case Op::kAddShifted:
-    case Op::kSub:
-    case Op::kMul:
-    case Op::kAnd:
-    case Op::kOr:
-    case Op::kXor:
-    case Op::kAndNot:
-    case Op::kOrNot:
-    case Op::kShl:
-    case Op::kShr:
-    case Op::kSar:
-    case Op::kRol:
-    case Op::kRor:
-    case Op::kDivS:
-    case Op::kDivU:
-    case Op::kModS:
-    case Op::kModU:
-    case Op::kNeg:
-    case Op::kNot:
-    case Op::kNotBool:
-    case Op::kCompare:
-    case Op::kSelect:
-    case Op::kSelectCmp:
-    case Op::kSext:
-    case Op::kZext:
-      return integer(n, step);
-  }
+void Emitter::add_shifted(const Node& n, const Step& step) {
+  a_.alu(Alu::kAdd, integer_register(step.result), integer_register(step.in[0]),
+         integer_register(step.in[1]), 8, static_cast<uint8_t>(n.imm));
 }
 
-void Emitter::integer(const Node& n, const Step& step) {
+void Emitter::unary(const Node& n, const Step& step) {
   const uint8_t to = integer_register(step.result);
-  const uint8_t width = at_least_four(n.width);
-  switch (n.op) {
-    case Op::kAdd:
-      return three(Alu::kAdd, n, step);
-    case Op::kAddShifted:
-      return a_.alu(Alu::kAdd, to, integer_register(step.in[0]), integer_register(step.in[1]), 8,
-                    static_cast<uint8_t>(n.imm));
-    case Op::kSub:
-      return three(Alu::kSub, n, step);
-    case Op::kAnd:
-      return three(Alu::kAnd, n, step);
-    case Op::kOr:
-      return three(Alu::kOr, n, step);
-    case Op::kXor:
-      return three(Alu::kXor, n, step);
-    case Op::kMul:
-      return multiply(n, step);
-    case Op::kAndNot:
-    case Op::kOrNot:
-      return bool_not(n, step);
-    case Op::kShl:
-    case Op::kShr:
-    case Op::kSar:
-    case Op::kRol:
-    case Op::kRor:
-      return shift(n, step);
-    case Op::kDivS:
-    case Op::kDivU:
-    case Op::kModS:
-    case Op::kModU:
-      return divide(n, step);
-    case Op::kNeg:
-      return a_.alu(Alu::kSub, to, kZero, integer_register(step.in[0]), width);
-    case Op::kNot:
-      return a_.alu(Alu::kOrNot, to, kZero, integer_register(step.in[0]), width);
-    case Op::kNotBool:
-      return a_.logical(Logical::kXor, to, integer_register(step.in[0]), *logical_immediate(1, 4),
-                        4);
-    case Op::kCompare:
-      compare(n.width, n.cond, step.in[0], step.in[1]);
-      return a_.set(condition_of(n.cond), to);
-    case Op::kSelect:
-    case Op::kSelectCmp:
-      return select(n, step);
-    case Op::kSext:
-      return a_.sign_extend(to, integer_register(step.in[0]), n.from);
-    case Op::kZext:
-      return a_.zero_extend(to, integer_register(step.in[0]), n.from);
-    default:
-      return a_.trap();
+  const uint8_t from = integer_register(step.in[0]);
+  if (n.op == Op::kSext) return a_.sign_extend(to, from, n.from);
+  if (n.op == Op::kZext) return a_.zero_extend(to, from, n.from);
+  if (n.op == Op::kNotBool) {
+    return a_.logical(Logical::kXor, to, from, *logical_immediate(1, 4), 4);
   }
+  a_.alu(n.op == Op::kNeg ? Alu::kSub : Alu::kOrNot, to, kZero, from, at_least_four(n.width));
+}
+
+void Emitter::compare(const Node& n, const Step& step) {
+  ask(n.width, n.cond, step.in[0], step.in[1]);
+  a_.set(condition_of(n.cond), integer_register(step.result));
+}
+
+void Emitter::exit_if(const Node& n, const Step& step, Label exit) {
+  jump_if(n.width, n.cond, step.in[0], step.in[1], exit);
 }
 
 // to := a op b, where b may be a constant.
-void Emitter::three(Alu op, const Node& n, const Step& step) {
+void Emitter::three(const Node& n, const Step& step) {
+  const Alu op = alu_of(n.op);
   const uint8_t to = integer_register(step.result);
   const uint8_t a = integer_register(step.in[0]);
   const Place& b = step.in[1];
@@ -253,10 +150,10 @@ void Emitter::divide(const Node& n, const Step& step) {
 }
 
 // Values of 1 and 2 bytes are extended first.
-void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) {
+void Emitter::ask(uint8_t width, Cond cond, const Place& a, const Place& b) {
   const uint8_t left = integer_register(a);
   const bool constant = b.kind == Place::kConstant;
-  if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return test_bits(width, left, b);
+  if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return ask_bits(width, left, b);
   if (width >= 4) {
     if (constant) return a_.compare_imm(left, compared_constant(b.bits, width, cond), width);
     return a_.alu(Alu::kSubFlags, kZero, left, integer_register(b), width);
@@ -275,7 +172,7 @@ void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) 
 }
 
 // Whatever lies above 1 or 2 bytes does not count.
-void Emitter::test_bits(uint8_t width, uint8_t left, const Place& b) {
+void Emitter::ask_bits(uint8_t width, uint8_t left, const Place& b) {
   if (b.kind == Place::kConstant) {
     const uint64_t mask = width == 8 ? b.bits : b.bits & ((uint64_t{1} << (8 * width)) - 1);
     return a_.logical(Logical::kAndFlags, kZero, left,
@@ -286,27 +183,18 @@ void Emitter::test_bits(uint8_t width, uint8_t left, const Place& b) {
   a_.alu(Alu::kAndFlags, kZero, kScratch, integer_register(b), 4);
 }
 
-void Emitter::jump_if(uint8_t width, Cond cond, const Place& a, const Place& b, Label to) {
-  const bool with_zero = b.kind == Place::kConstant && b.bits == 0 && width >= 4;
-  if (with_zero && (cond == Cond::kEq || cond == Cond::kNe)) {
-    return a_.jump_if_zero(cond == Cond::kEq, integer_register(a), width, to);
-  }
-  compare(width, cond, a, b);
-  a_.jump_if(condition_of(cond), to);
-}
-
-void Emitter::test_bool(uint8_t reg) {
+void Emitter::ask_bool(uint8_t reg) {
   a_.logical(Logical::kAndFlags, kZero, reg, *logical_immediate(0xff, 4), 4);
 }
 
 void Emitter::select(const Node& n, const Step& step) {
   const uint8_t to = integer_register(step.result);
   if (n.op == Op::kSelectCmp) {
-    compare(n.from, n.cond, step.in[2], step.in[3]);
+    ask(n.from, n.cond, step.in[2], step.in[3]);
     return a_.select(condition_of(n.cond), to, integer_register(step.in[0]),
                      integer_register(step.in[1]));
   }
-  test_bool(integer_register(step.in[0]));
+  ask_bool(integer_register(step.in[0]));
   a_.select(Condition::kNotEqual, to, integer_register(step.in[1]), integer_register(step.in[2]));
 }
 
@@ -334,8 +222,7 @@ void Emitter::data_address(const Node& n, const Step& step) {
     at.has_base = false;
     return a_.address(to, at, 4);
   }
-  a_.address(kScratch, at, 8);
-  a_.alu(Alu::kSub, to, kScratch, kDataRegister, 4);
+  address_to_data(to, at);
 }
 
 // A row without data is free.
@@ -352,22 +239,9 @@ void Emitter::instance(const Node& n, const Step& step) {
   a_.move(integer_register(step.result), kScratch);
 }
 
-void Emitter::helper(const Node& n, const Step& step) {
-  const uint32_t side = pou_.side->helper[step.node];
-  const ir::Unit& unit = pou_.side->units[side];
-  store_word(CONTEXT(pou), pou_.number);
-  a_.move_imm(0, reinterpret_cast<uintptr_t>(&unit));
-  a_.move(1, kFrameRegister);
-  a_.move(2, kSelfRegister);
-  a_.move(3, kDataRegister);
-  a_.load(4, CONTEXT(consts), 8);
-  a_.move(5, kContextRegister);
-  a_.move_imm(kScratch, reinterpret_cast<uintptr_t>(kHandlers.of[unit.op]));
-  a_.call(kScratch);
-  const Label stopped = a_.label();
-  stops_.push_back({stopped, n.unit});
-  a_.load(kScratch, CONTEXT(running), 1);
-  a_.jump_if_zero(true, kScratch, 4, stopped);
+void Emitter::pool(const Step& step) {
+  a_.load(kScratch, CONTEXT(consts), 8);
+  a_.alu(Alu::kSub, integer_register(step.result), kScratch, Registers::kData, 4);
 }
 
 }  // namespace vm::native::arm64

@@ -6,8 +6,7 @@
 #pragma once
 
 #include "vm/native/arm64/assembler.h"
-#include "vm/native/emit.h"
-#include "vm/native/jump_tables.h"
+#include "vm/native/function_emitter.h"
 
 namespace vm::native::arm64 {
 
@@ -15,32 +14,44 @@ constexpr bool is_signed(Cond cond) {
   return cond == Cond::kLtS || cond == Cond::kLeS || cond == Cond::kGtS || cond == Cond::kGeS;
 }
 
-inline constexpr uint8_t kIntegers[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
-                                        11, 12, 13, 14, 15, 24, 25, 26, 27, 28};
-inline constexpr uint32_t kIntegerCount = sizeof kIntegers;
-inline constexpr uint32_t kFloatCount = 31;
 inline constexpr uint8_t kScratch = 16;
-inline constexpr uint8_t kFrameRegister = 19;
-inline constexpr uint8_t kSelfRegister = 20;
-inline constexpr uint8_t kDataRegister = 21;
-inline constexpr uint8_t kContextRegister = 22;
-inline constexpr uint8_t kFuelRegister = 23;
 inline constexpr uint8_t kFloatScratch = 31;
-inline constexpr uint8_t kPouNumber = 9;  // at `interpret`
 
-// Code that all functions of one piece of memory share.
-struct Shared {
-  Label enter;      // uint64_t (const void* to, frame, self, data + 2 GiB, Context*)
-  Label leave;      // everything but pc and POU is in its register
-  Label interpret;  // entry of a POU without code: its number is in w9
+struct Registers {
+  using Assembler = arm64::Assembler;
+  using Address = arm64::Address;
+  using Condition = arm64::Condition;
+  static Address at(uint8_t base, int64_t offset) { return {base, 0xff, 0, true, offset}; }
+  static Address indexed(uint8_t base, uint8_t index, uint8_t scale, int64_t offset) {
+    return {base, index, static_cast<uint8_t>(scale == 8 ? 3 : scale / 2), true, offset};
+  }
+  static constexpr uint8_t kIntegers[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
+                                          11, 12, 13, 14, 15, 24, 25, 26, 27, 28};
+  static constexpr uint32_t kIntegerCount = sizeof kIntegers;
+  static constexpr uint32_t kFloatCount = 31;
+  static constexpr uint8_t kScratch = arm64::kScratch;
+  static constexpr uint8_t kFloatScratch = arm64::kFloatScratch;
+  static constexpr uint8_t kFrame = 19;
+  static constexpr uint8_t kSelf = 20;
+  static constexpr uint8_t kData = 21;
+  static constexpr uint8_t kContext = 22;
+  static constexpr uint8_t kFuel = 23;
+  static constexpr uint8_t kStack = kSp;
+  static constexpr uint8_t kId = 0;
+  static constexpr uint8_t kPointer = 1;
+  static constexpr uint8_t kPouNumber = 9;
+  static constexpr uint8_t kRecord = 2;
+  static constexpr uint8_t kValue = 3;
+  static constexpr uint8_t kArguments[] = {0, 1, 2, 3, 4, 5};
 };
+
 Shared emit_shared(Assembler& assembler);
 
 class Arm64Target : public Target {
  public:
   Arm64Target() {
-    integers = kIntegerCount;
-    floats = kFloatCount;
+    integers = Registers::kIntegerCount;
+    floats = Registers::kFloatCount;
   }
   Demands demands(const Function& f, const Node& node) const override;
   bool takes_constant(const Function& f, const Node& node, uint32_t operand) const override;
@@ -48,26 +59,13 @@ class Arm64Target : public Target {
   bool end_takes_constant(const Function& f, const End& end, uint32_t operand) const override;
 };
 
-class Emitter {
+class Emitter : public FunctionEmitter<Emitter, Registers> {
  public:
   Emitter(const PouCode& pou, const Shared& shared, Assembler& assembler);
   Entries run();
 
  private:
-  struct EdgeStub {
-    Label label;
-    Block block;
-    uint32_t target;
-  };
-  struct TableStub {
-    Label label;
-    std::vector<Label> entries;
-  };
-  struct CallStub {
-    Label label;
-    uint32_t side;
-    uint32_t exit;
-  };
+  friend class FunctionEmitter<Emitter, Registers>;
   struct NanStub {  // a float whose bits this machine would choose otherwise
     Label label;
     Label back;
@@ -77,55 +75,45 @@ class Emitter {
     uint8_t width;
   };
 
-  // emitter.cc: blocks, moves, exits
-  void function();
-  void block(Block b);
-  void end(Block b);
-  void branch(Block b);
-  void loop_end(Block b);
-  void again(Block head);
-  void take_turns(Block b);
-  void give_back(uint32_t fuel);
-  bool only_asks(Block head) const;
-  void moves(const std::vector<Move>& all);
-  void move(const Move& m);
-  void move_to_spill(const Move& m);
-  void load_place(uint8_t to, const Place& from);
-  void load_float(uint8_t to, const Place& from, uint8_t width);
-  void load_bool(uint8_t to, const Address& from);
-  void stubs();
-  void store_slot(const SlotValue& slot, const Place& place);
-  void leave_at_side(uint32_t side);
-  Label exit_label(uint32_t exit);
+  // emitter.cc: what FunctionEmitter asks for
   void enter_frame();
   void leave_frame();
-
-  // emit_table.cc
-  Label label_of(const JumpTable::Way& way);
-  void jump_by_table(Block b, const JumpTable& table);
-  void tables();
+  void jump_if_exposed(Label exit);
+  void jump_when(const End& end, const Place in[2], bool when, Label to);
+  void jump_if(uint8_t width, Cond cond, const Place& a, const Place& b, Label to);
+  void jump_through(Label table, uint8_t value, uint8_t width);
+  void jump_unless_running(Label to);
+  void take_fuel(uint32_t turns);
+  void add(uint8_t to, int64_t value);
+  void add_register(uint8_t to, uint8_t from);
+  void load_bool(uint8_t to, const Address& from);
+  void float_constant(uint8_t to, uint64_t bits, uint8_t width);
+  void store_word(const Address& to, uint32_t value);
+  void address_to_data(uint8_t to, const Address& at);
+  void place_in_data(uint8_t to, uint8_t place);
+  void data_memory(uint8_t to);
+  void unit_address(uint8_t to, const ir::Unit* units, uint8_t number);
 
   // emit_nodes.cc
-  void node(const Step& step);
-  void integer(const Node& node, const Step& step);
-  void three(Alu op, const Node& node, const Step& step);
+  void three(const Node& node, const Step& step);
+  void add_shifted(const Node& node, const Step& step);
   void multiply(const Node& node, const Step& step);
   void bool_not(const Node& node, const Step& step);
   void shift(const Node& node, const Step& step);
   void shift_by_constant(const Node& node, uint8_t to, uint8_t from, uint32_t count);
   void rotate_by_constant(const Node& node, uint8_t to, uint8_t from, uint32_t count);
   void divide(const Node& node, const Step& step);
-  void compare(uint8_t width, Cond cond, const Place& a, const Place& b);
-  void test_bits(uint8_t width, uint8_t left, const Place& b);
-  void jump_if(uint8_t width, Cond cond, const Place& a, const Place& b, Label to);
-  void test_bool(uint8_t reg);
+  void unary(const Node& node, const Step& step);
+  void compare(const Node& node, const Step& step);
+  void ask(uint8_t width, Cond cond, const Place& a, const Place& b);
+  void ask_bits(uint8_t width, uint8_t left, const Place& b);
+  void ask_bool(uint8_t reg);
+  void exit_if(const Node& node, const Step& step, Label exit);
   void select(const Node& node, const Step& step);
   void load(const Node& node, const Step& step);
   void store(const Node& node, const Step& step);
   void data_address(const Node& node, const Step& step);
   void instance(const Node& node, const Step& step);
-  void helper(const Node& node, const Step& step);
-  void native(const Node& node);
   void pool(const Step& step);
 
   // emit_float.cc
@@ -133,42 +121,16 @@ class Emitter {
   void float_compare(const Node& node, const Step& step);
   void float_to_int(const Node& node, const Step& step);
   void settle_nan(uint8_t result, uint8_t a, uint8_t b, uint8_t width);
-  void nan_stubs();
+  void own_stubs();
 
   // emit_call.cc
-  void call(const Node& node);
-  void enter(const Node& node, const Step& step);
-  void take_fuel(const Node& node);
-  void push_record(uint32_t call);
-  void inlined_exit(uint32_t exit);
-  void activation(uint32_t inlined);
-  void slow_call(uint32_t number);
+  void call_pou(const Call& call);
+  void call_function(uintptr_t function);
+  void native(const Node& node);
 
-  uint8_t integer_register(const Place& place) const;
-  uint8_t float_register(const Place& place) const;
-  Address spill(uint32_t slot) const;
-  Address variable(uint32_t number) const;
   Address address(const Mem& mem, const Place& index, const Place& pointer = {}) const;
-  Address context(size_t offset) const;
-  void store_word(const Address& to, uint32_t value);
 
-  const PouCode& pou_;
-  const Function& f_;
-  const Allocated& places_;
-  const Shared& shared_;
-  Assembler& a_;
-  Entries entries_;
-  int32_t frame_bytes_ = 0;
-  std::vector<Label> blocks_;
-  std::vector<Label> exits_;
-  std::vector<EdgeStub> edges_;
-  JumpTables tables_;
-  std::vector<TableStub> table_stubs_;
-  std::vector<std::pair<Label, uint32_t>> stops_;  // a helper that trapped: its unit
-  std::vector<CallStub> call_stubs_;               // out of fuel at a call
   std::vector<NanStub> nan_stubs_;
-  std::vector<Label> inlined_;  // by Function::inlined: makes the activation
-  Label leave_ = 0;
 };
 
 // The condition of integers that are compared.

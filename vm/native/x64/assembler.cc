@@ -10,16 +10,11 @@ bool fits8(int64_t v) { return v >= -128 && v <= 127; }
 
 }  // namespace
 
-Label Assembler::label() {
-  labels_.push_back(0xffffffffu);
-  return static_cast<Label>(labels_.size() - 1);
-}
-
 void Assembler::patch() {
   for (const Fixup& fixup : fixups_) {
     int32_t distance;
     std::memcpy(&distance, &code_[fixup.at], sizeof distance);
-    distance += static_cast<int32_t>(labels_[fixup.to] - (fixup.at + 4));
+    distance += static_cast<int32_t>(offset_of(fixup.to) - (fixup.at + 4));
     std::memcpy(&code_[fixup.at], &distance, sizeof distance);
   }
   fixups_.clear();
@@ -226,7 +221,7 @@ void Assembler::address_of(uint8_t to, Label label) {
 }
 void Assembler::table_entry(Label table, Label to) {
   fixups_.push_back({here(), to});
-  imm32(int64_t{here()} + 4 - labels_[table]);
+  imm32(int64_t{here()} + 4 - offset_of(table));
 }
 void Assembler::jump_to(uint8_t reg) { instruction(0, false, {0xff}, 4, Operand::of(reg)); }
 void Assembler::call(Label to) {

@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <vector>
 
+#include "vm/native/code_buffer.h"
+
 namespace vm::native::x64 {
 
 enum Register : uint8_t {
@@ -62,28 +64,19 @@ enum class Condition : uint8_t {
   kLessOrEqual,
   kGreater
 };
+// Conditions come in pairs, which differ in the lowest bit.
+inline Condition inverted(Condition c) {
+  return static_cast<Condition>(static_cast<uint8_t>(c) ^ 1);
+}
 
 // 0: add, 1: or, 4: and, 5: sub, 6: xor, 7: cmp
 enum class Alu : uint8_t { kAdd = 0, kOr = 1, kAnd = 4, kSub = 5, kXor = 6, kCmp = 7 };
 enum class Shift : uint8_t { kRol = 0, kRor = 1, kShl = 4, kShr = 5, kSar = 7 };
 
-using Label = uint32_t;
-
-class Assembler {
+class Assembler : public CodeBuffer {
  public:
-  const std::vector<uint8_t>& code() const { return code_; }
-  void reserve(size_t bytes) { code_.reserve(bytes); }
-  uint32_t here() const { return static_cast<uint32_t>(code_.size()); }
-
-  Label label();
-  void bind(Label label) { labels_[label] = here(); }
-  bool is_bound(Label label) const { return labels_[label] != 0xffffffffu; }
-  uint32_t offset_of(Label label) const { return labels_[label]; }
   // Jumps so far get their distances: their labels are bound.
   void patch();
-  size_t labels() const { return labels_.size(); }
-  // For patched code: labels from number `first` on are given out anew.
-  void forget_labels(size_t first) { labels_.resize(first); }
 
   // Integer instructions work on `width` bytes.
   void move(uint8_t to, uint8_t from);  // 8 bytes
@@ -112,6 +105,7 @@ class Assembler {
   void move_if(Condition condition, uint8_t to, uint8_t from);  // 8 bytes
 
   void jump(Label to);
+  void jump_long(Label to) { jump(to); }
   void jump_if(Condition condition, Label to);
   void jump_to(uint8_t reg);
   void call(Label to);
@@ -150,8 +144,6 @@ class Assembler {
     uint32_t at;
     Label to;
   };
-  std::vector<uint8_t> code_;
-  std::vector<uint32_t> labels_;
   std::vector<Fixup> fixups_;
 };
 

@@ -12,128 +12,40 @@ namespace {
 
 uint8_t at_least_four(uint8_t width) { return width < 4 ? uint8_t{4} : width; }
 
-}  // namespace
-
-void Emitter::node(const Step& step) {
-  const Node& n = f_.nodes[step.node];
-  switch (n.op) {
-    case Op::kConst:
-      return;
-    case Op::kLoad:
-      return load(n, step);
-    case Op::kStore:
-      return store(n, step);
-    case Op::kAddr:
-      return data_address(n, step);
-    case Op::kPlace:
-      return a_.address(integer_register(step.result), address(n.mem, step.index, step.pointer), 8);
-    case Op::kDivS:
-    case Op::kDivU:
-    case Op::kModS:
-    case Op::kModU:
-      return divide(n, step);
-    case Op::kSelect:
-    case Op::kSelectCmp:
-      return select(n, step);
-    case Op::kExitIf:
-      compare(n, step);
-      return a_.jump_if(condition_of(n.cond), exit_label(n.exit));
-    case Op::kInstance:
-      return instance(n, step);
-    case Op::kTaskTime:
-      return a_.load(integer_register(step.result), CONTEXT(task_time_ns), 8);
-    case Op::kAdvanceTime: {
-      const uint8_t by = integer_register(step.in[0]);
-      a_.load(kScratch, CONTEXT(task_time_ns), 8);
-      a_.alu(Alu::kAdd, kScratch, Operand::of(by), 8);
-      return a_.store(CONTEXT(task_time_ns), kScratch, 8);
-    }
-    case Op::kPool:
-      return pool(step);
-    case Op::kNative:
-      return native(n);
-    case Op::kHelper:
-      return helper(n, step);
-    case Op::kCall:
-      return call(n);
-    case Op::kEnter:
-      return enter(n, step);
-    case Op::kFCompare:
-      return float_compare(n, step);
-    case Op::kFAdd:
-    case Op::kFSub:
-    case Op::kFMul:
-    case Op::kFDiv:
-    case Op::kFMin:
-    case Op::kFMax:
-    case Op::kFNeg:
-    case Op::kFAbs:
-    case Op::kFSqrt:
-    case Op::kFSelect:
-    case Op::kIntToFloat:
-    case Op::kFloatToInt:
-    case Op::kFloatWidth:
-    case Op::kBitsToFloat:
-    case Op::kFloatToBits:
-      return floating(n, step);
-    default:
-      return integer(n, step);
-  }
+Alu alu_of(Op op) {
+  if (op == Op::kAdd) return Alu::kAdd;
+  if (op == Op::kSub) return Alu::kSub;
+  if (op == Op::kAnd) return Alu::kAnd;
+  return op == Op::kOr ? Alu::kOr : Alu::kXor;
 }
 
-void Emitter::integer(const Node& n, const Step& step) {
+}  // namespace
+
+void Emitter::add_shifted(const Node& n, const Step& step) {
+  a_.address(integer_register(step.result),
+             {integer_register(step.in[0]), integer_register(step.in[1]),
+              static_cast<uint8_t>(1 << n.imm), true, 0},
+             8);
+}
+
+void Emitter::unary(const Node& n, const Step& step) {
   const uint8_t to = integer_register(step.result);
-  switch (n.op) {
-    case Op::kAdd:
-      return three(Alu::kAdd, n, step);
-    case Op::kAddShifted:
-      return a_.address(to,
-                        {integer_register(step.in[0]), integer_register(step.in[1]),
-                         static_cast<uint8_t>(1 << n.imm), true, 0},
-                        8);
-    case Op::kSub:
-      return three(Alu::kSub, n, step);
-    case Op::kAnd:
-      return three(Alu::kAnd, n, step);
-    case Op::kOr:
-      return three(Alu::kOr, n, step);
-    case Op::kXor:
-      return three(Alu::kXor, n, step);
-    case Op::kMul:
-      return multiply(n, step);
-    case Op::kAndNot:
-    case Op::kOrNot:
-      return bool_not(n, step);
-    case Op::kShl:
-    case Op::kShr:
-    case Op::kSar:
-    case Op::kRol:
-    case Op::kRor:
-      return shift(n, step);
-    case Op::kNeg:
-      a_.move(to, integer_register(step.in[0]));
-      return a_.negate(to, at_least_four(n.width));
-    case Op::kNot:
-      a_.move(to, integer_register(step.in[0]));
-      return a_.complement(to, at_least_four(n.width));
-    case Op::kNotBool:
-      a_.move(to, integer_register(step.in[0]));
-      return a_.alu_imm(Alu::kXor, Operand::of(to), 1, 4);
-    case Op::kCompare:
-      clear_for_set(to, step);
-      compare(n, step);
-      return a_.set(condition_of(n.cond), to);
-    case Op::kSext:
-      return a_.load_signed(to, operand(n, step, 0), n.from);
-    case Op::kZext:
-      return a_.zero_extend(to, operand(n, step, 0), n.from);
-    default:
-      return a_.trap();
-  }
+  if (n.op == Op::kSext) return a_.load_signed(to, operand(n, step, 0), n.from);
+  if (n.op == Op::kZext) return a_.zero_extend(to, operand(n, step, 0), n.from);
+  a_.move(to, integer_register(step.in[0]));
+  if (n.op == Op::kNotBool) return a_.alu_imm(Alu::kXor, Operand::of(to), 1, 4);
+  if (n.op == Op::kNeg) return a_.negate(to, at_least_four(n.width));
+  a_.complement(to, at_least_four(n.width));
+}
+
+void Emitter::exit_if(const Node& n, const Step& step, Label exit) {
+  ask(n, step);
+  a_.jump_if(condition_of(n.cond), exit);
 }
 
 // to := a op b, where b may be a constant or in memory.
-void Emitter::three(Alu op, const Node& n, const Step& step) {
+void Emitter::three(const Node& n, const Step& step) {
+  const Alu op = alu_of(n.op);
   const uint8_t to = integer_register(step.result);
   const uint8_t a = integer_register(step.in[0]);
   const Place& b = step.in[1];
@@ -188,7 +100,7 @@ void Emitter::bool_not(const Node& n, const Step& step) {
   const bool any_byte = b.kind == Place::kHome && !b.clean;
   if (op == Alu::kAnd && !any_byte && has_and_not_) {
     if (b.kind == Place::kRegister) return a_.and_not(to, integer_register(b), a);
-    load_place(kScratch, b, 1);
+    load_place(kScratch, b);
     return a_.and_not(to, kScratch, a);
   }
   if (any_byte) {
@@ -196,7 +108,7 @@ void Emitter::bool_not(const Node& n, const Step& step) {
     a_.alu_imm(Alu::kCmp, operand(b), 0, 1);
     a_.set(Condition::kEqual, kScratch);
   } else {
-    load_place(kScratch, b, 1);
+    load_place(kScratch, b);
     a_.alu_imm(Alu::kXor, Operand::of(kScratch), 1, 4);
   }
   if (to == a) return a_.alu(op, to, Operand::of(kScratch), 4);
@@ -262,13 +174,20 @@ void Emitter::clear_for_set(uint8_t to, const Step& step) {
 }
 
 void Emitter::compare(const Node& n, const Step& step) {
-  if (n.folded == 0xff) return compare(n.width, n.cond, step.in[0], step.in[1]);
+  const uint8_t to = integer_register(step.result);
+  clear_for_set(to, step);
+  ask(n, step);
+  a_.set(condition_of(n.cond), to);
+}
+
+void Emitter::ask(const Node& n, const Step& step) {
+  if (n.folded == 0xff) return ask(n.width, n.cond, step.in[0], step.in[1]);
   a_.alu(Alu::kCmp, integer_register(step.in[0]), operand(n, step, 1), n.width);
 }
 
-void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) {
+void Emitter::ask(uint8_t width, Cond cond, const Place& a, const Place& b) {
   const uint8_t left = integer_register(a);
-  if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return test_bits(width, left, b);
+  if (cond == Cond::kNoBit || cond == Cond::kAnyBit) return ask_bits(width, left, b);
   if (b.kind == Place::kConstant) {
     if (b.bits == 0) return a_.test(left, left, width);
     return a_.alu_imm(Alu::kCmp, Operand::of(left), field(b.bits, width), width);
@@ -276,7 +195,7 @@ void Emitter::compare(uint8_t width, Cond cond, const Place& a, const Place& b) 
   a_.alu(Alu::kCmp, left, operand(b), width);
 }
 
-void Emitter::test_bits(uint8_t width, uint8_t left, const Place& b) {
+void Emitter::ask_bits(uint8_t width, uint8_t left, const Place& b) {
   if (b.kind != Place::kConstant) return a_.test(left, integer_register(b), width);
   const uint64_t mask = width == 8 ? b.bits : b.bits & ((uint64_t{1} << (8 * width)) - 1);
   if (mask <= 0xff) return a_.test_imm(left, field(mask, 1), 1);
@@ -291,17 +210,13 @@ void Emitter::select(const Node& n, const Step& step) {
   const uint8_t no = integer_register(step.in[compares ? 1 : 2]);
   Condition condition = Condition::kNotEqual;
   if (compares) {
-    compare(n.from, n.cond, step.in[2], step.in[3]);
+    ask(n.from, n.cond, step.in[2], step.in[3]);
     condition = condition_of(n.cond);
   } else {
     const uint8_t question = integer_register(step.in[0]);
     a_.test(question, question, 1);
   }
-  if (to == yes) {
-    // Conditions come in pairs, which differ in the lowest bit.
-    const auto other = static_cast<Condition>(static_cast<uint8_t>(condition) ^ 1);
-    return a_.move_if(other, to, no);
-  }
+  if (to == yes) return a_.move_if(inverted(condition), to, no);
   a_.move(to, no);
   a_.move_if(condition, to, yes);
 }
@@ -348,13 +263,6 @@ void Emitter::data_address(const Node& n, const Step& step) {
   address_to_data(to, at);
 }
 
-// From an address of the machine.
-void Emitter::address_to_data(uint8_t to, Address at) {
-  at.disp = static_cast<int32_t>(static_cast<uint32_t>(at.disp) + (1u << 31));
-  a_.address(to, at, 8);
-  a_.alu(Alu::kSub, to, Operand::of(kDataRegister), 4);
-}
-
 // A row without data is free.
 void Emitter::instance(const Node& n, const Step& step) {
   const uint8_t id = integer_register(step.in[0]);
@@ -373,6 +281,13 @@ void Emitter::instance(const Node& n, const Step& step) {
   a_.test(to, to, 4);
   a_.jump_if(Condition::kEqual, none);
   a_.move(integer_register(step.result), to);
+}
+
+void Emitter::pool(const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  a_.load(to, CONTEXT(consts), 8);
+  a_.alu(Alu::kSub, to, Operand::of(Registers::kData), 4);
+  a_.alu_imm(Alu::kAdd, Operand::of(to), INT32_MIN, 4);
 }
 
 }  // namespace vm::native::x64
