@@ -22,16 +22,14 @@ base::Status abort(const tools::Options& options) {
   if (!client.ok()) return client.error();
   base::Result<base::Bytes> body = client->call({.command = vm::Command::kAbort});
   if (!body.ok()) return body.error();
-  base::ByteReader answer(*body);
-  const bool done = answer.boolean();
-  const std::string text = base::visible(answer.text());
-  if (!answer.done()) return base::Error{base::Refusal::kProtocol, "answer not understood"};
+  base::Result<vm::AbortAnswer> answer = vm::decode_abort_answer(*body);
+  if (!answer.ok()) return answer.error();
   if (json) {
     tools::JsonWriter out;
-    out.begin_object().field("aborted", done).field("text", text).end_object();
+    out.begin_object().field("aborted", answer->done).field("text", answer->text).end_object();
     std::fputs(out.finish().c_str(), stdout);
   } else {
-    std::printf("%s\n", text.c_str());
+    std::printf("%s\n", answer->text.c_str());
   }
   return base::Ok{};
 }

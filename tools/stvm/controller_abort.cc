@@ -11,12 +11,8 @@ namespace {
 
 using online_change::State;
 
-// Whether there was anything, and a line for people.
 base::Bytes abort_answer(bool done, const std::string& text) {
-  base::ByteWriter answer;
-  answer.boolean(done);
-  answer.text(text);
-  return answer.take();
+  return vm::encode(vm::AbortAnswer{done, text});
 }
 
 std::string unless_text(const std::string& name) {

@@ -287,10 +287,9 @@ base::Status ControllerClient::stage_again(const std::string& edit) {
 
 base::Status ControllerClient::learn_edition(const base::Result<base::Bytes>& staged) {
   if (!staged.ok()) return staged.error();
-  base::ByteReader answer(*staged);
-  edition_ = answer.u64();
-  if (!answer.done())
-    return base::Error{base::Refusal::kProtocol, "answer not understood: edition"};
+  base::Result<vm::StagedAnswer> answer = vm::decode_staged_answer(*staged);
+  if (!answer.ok()) return answer.error();
+  edition_ = answer->edition;
   return base::Ok{};
 }
 

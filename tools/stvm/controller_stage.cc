@@ -135,9 +135,7 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
     changed_by_ = who_;
     ++edition_;
   }
-  base::ByteWriter answer;
-  answer.u64(edition_);
-  return answer.take();
+  return vm::encode(vm::StagedAnswer{edition_});
 }
 
 // Once, so that a dry run says the same as the change (case 78).
@@ -182,9 +180,7 @@ base::Result<base::Bytes> ControllerService::stage_rehearsal(base::ByteSpan pack
   rehearsal_ = std::move(*staged);
   rehearsal_->change().set_pace(pace());
   rehearsal_of_ = session_;
-  base::ByteWriter answer;
-  answer.u64(edition_);
-  return answer.take();
+  return vm::encode(vm::StagedAnswer{edition_});
 }
 
 const online_change::Change& ControllerService::looked_at() const {

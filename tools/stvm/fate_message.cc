@@ -15,26 +15,34 @@ void count_fields(A& a, T& counts) {
 }
 
 template <class A, class T>
-void row_fields(A& a, T& row) {
-  a(row.path);
-  a(row.old_type);
-  a(row.new_type);
-  a(row.may_lose);
-  a(row.reason);
-  a(row.count);
-}
-
-template <class A, class T>
-void live_fields(A& a, T& live) {
-  a(live.now);
-  a(live.after);
-  a(live.loss);
+void line_fields(A& a, T& line) {
+  a.choice(line.row.fate, online_change::Fate::kDropped);
+  a(line.row.path);
+  a(line.row.old_type);
+  a(line.row.new_type);
+  a(line.row.may_lose);
+  a(line.row.reason);
+  a(line.row.count);
+  a(line.live.now);
+  a(line.live.after);
+  a(line.live.loss);
+  a(line.row.old_path);
+  a(line.old_address);
+  a(line.new_address);
 }
 
 template <class A, class T>
 void fate_edit_fields(A& a, T& edit) {
+  a.choice(edit.change, online_change::PouChange::kFollows);
   a(edit.pou);
   a(edit.instances);
+  a(edit.what);
+}
+
+template <class A, class T>
+void system_fields(A& a, T& edit) {
+  a(edit.kind);
+  a(edit.name);
   a(edit.what);
 }
 
@@ -76,57 +84,17 @@ void report_fields(A& a, T& report) {
 // list() finds functions in the namespace of its rows.
 namespace tools {
 
-static void fields(vm::FieldWriter& a, const FateLine& line) {
-  a(static_cast<uint8_t>(line.row.fate));
-  stvm::row_fields(a, line.row);
-  stvm::live_fields(a, line.live);
-  a(line.row.old_path);
-  a(line.old_address);
-  a(line.new_address);
-}
-
-static void fields(vm::FieldReader& a, FateLine& line) {
-  uint8_t fate = 0;
-  a(fate);
-  if (fate > static_cast<uint8_t>(online_change::Fate::kDropped)) {
-    a.fail();
-    return;
-  }
-  line.row.fate = static_cast<online_change::Fate>(fate);
-  stvm::row_fields(a, line.row);
-  stvm::live_fields(a, line.live);
-  a(line.row.old_path);
-  a(line.old_address);
-  a(line.new_address);
-}
+static void fields(vm::FieldWriter& a, const FateLine& line) { stvm::line_fields(a, line); }
+static void fields(vm::FieldReader& a, FateLine& line) { stvm::line_fields(a, line); }
 
 }  // namespace tools
 
 namespace online_change {
 
-static void fields(vm::FieldWriter& a, const PouEdit& edit) {
-  a(static_cast<uint8_t>(edit.change));
-  stvm::fate_edit_fields(a, edit);
-}
-
-static void fields(vm::FieldReader& a, PouEdit& edit) {
-  uint8_t change = 0;
-  a(change);
-  if (change > static_cast<uint8_t>(PouChange::kFollows)) return a.fail();
-  edit.change = static_cast<PouChange>(change);
-  stvm::fate_edit_fields(a, edit);
-}
-
-static void fields(vm::FieldWriter& a, const SystemEdit& edit) {
-  a(edit.kind);
-  a(edit.name);
-  a(edit.what);
-}
-static void fields(vm::FieldReader& a, SystemEdit& edit) {
-  a(edit.kind);
-  a(edit.name);
-  a(edit.what);
-}
+static void fields(vm::FieldWriter& a, const PouEdit& edit) { stvm::fate_edit_fields(a, edit); }
+static void fields(vm::FieldReader& a, PouEdit& edit) { stvm::fate_edit_fields(a, edit); }
+static void fields(vm::FieldWriter& a, const SystemEdit& edit) { stvm::system_fields(a, edit); }
+static void fields(vm::FieldReader& a, SystemEdit& edit) { stvm::system_fields(a, edit); }
 
 }  // namespace online_change
 
@@ -145,7 +113,7 @@ base::Result<FatePage> decode_fate_page(base::ByteSpan body) {
   vm::FieldReader reader(body);
   FatePage page;
   page_fields(reader, page);
-  if (!reader.done()) return vm::not_understood("fate report");
+  if (reader.failed()) return vm::not_understood("fate report");
   return page;
 }
 
@@ -159,7 +127,7 @@ base::Result<online_change::SwitchReport> decode_switch_report(base::ByteSpan bo
   vm::FieldReader reader(body);
   online_change::SwitchReport report;
   report_fields(reader, report);
-  if (!reader.done()) return vm::not_understood("report of the switch");
+  if (reader.failed()) return vm::not_understood("report of the switch");
   return report;
 }
 

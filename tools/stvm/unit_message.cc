@@ -12,26 +12,13 @@ const char* other_slot_name(OtherSlot what) {
 
 namespace {
 
-// A number on the wire that is one of an enumeration whose last one is `last`.
-template <class E>
-void choice(vm::FieldWriter& a, const E& value, E) {
-  a(static_cast<uint8_t>(value));
-}
-template <class E>
-void choice(vm::FieldReader& a, E& value, E last) {
-  uint8_t number = 0;
-  a(number);
-  if (number > static_cast<uint8_t>(last)) return a.fail();
-  value = static_cast<E>(number);
-}
-
 template <class A, class T>
 void unit_fields(A& a, T& row) {
   a(row.name);
   a(row.instances);
   a(row.slot);
   a(row.unit);
-  choice(a, row.other, OtherSlot::kLeft);
+  a.choice(row.other, OtherSlot::kLeft);
   a(row.other_unit);
   a(row.other_version);
   a(row.cycle);
@@ -42,7 +29,7 @@ void unit_fields(A& a, T& row) {
 
 template <class A, class T>
 void pou_fields(A& a, T& edit) {
-  choice(a, edit.change, online_change::PouChange::kFollows);
+  a.choice(edit.change, online_change::PouChange::kFollows);
   a(edit.pou);
   a(edit.instances);
   a(edit.what);
@@ -50,13 +37,13 @@ void pou_fields(A& a, T& edit) {
 
 template <class A, class T>
 void type_fields(A& a, T& edit) {
-  choice(a, edit.change, online_change::TypeChange::kEdited);
+  a.choice(edit.change, online_change::TypeChange::kEdited);
   a(edit.type);
 }
 
 template <class A, class T>
 void variable_fields(A& a, T& row) {
-  choice(a, row.fate, online_change::Fate::kDropped);
+  a.choice(row.fate, online_change::Fate::kDropped);
   a(row.path);
   a(row.old_type);
   a(row.new_type);

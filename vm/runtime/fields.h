@@ -1,9 +1,14 @@
 // One list of fields for each message serves writing and reading: FieldWriter and FieldReader
 // have the same calls. Only for messages; images have their own, stable format.
+//
+// Controllers and tools of different releases talk (protocol.h), so lists only grow: a field that
+// comes later stands at the end of its message or row, as `a.added(field)`. An older sender does
+// not have it, and it keeps its default; an older reader skips it. A row carries its length for
+// that. What is an enumeration is a `choice()`.
 #pragma once
 
+#include <cstring>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "base/bytes.h"
@@ -24,9 +29,26 @@ class FieldWriter {
   void operator()(uint64_t v) { out_.u64(v); }
   void operator()(int64_t v) { out_.i64(v); }
   template <class T>
+  void added(const T& v) {
+    (*this)(v);
+  }
+  template <class E>
+  void choice(const E& v, E) {
+    out_.u8(static_cast<uint8_t>(v));
+  }
+  template <class T>
   void list(const std::vector<T>& rows, uint32_t) {
     out_.u32(static_cast<uint32_t>(rows.size()));
-    for (const T& row : rows) fields(*this, row);
+    for (const T& row : rows) {
+      const size_t length_at = out_.size();
+      out_.u32(0);
+      fields(*this, row);
+      out_.patch_u32(length_at, static_cast<uint32_t>(out_.size() - length_at - 4));
+    }
+  }
+  void list(const std::vector<std::string>& texts, uint32_t) {
+    out_.u32(static_cast<uint32_t>(texts.size()));
+    for (const std::string& text : texts) out_.text(text);
   }
   base::Bytes take() { return out_.take(); }
 
@@ -61,22 +83,43 @@ class FieldReader {
   void operator()(uint32_t& v) { v = in_.u32(); }
   void operator()(uint64_t& v) { v = in_.u64(); }
   void operator()(int64_t& v) { v = in_.i64(); }
-  // Every row takes at least `least_bytes`, so a hostile count cannot ask for much memory.
+  template <class T>
+  void added(T& v) {
+    if (in_.left() != 0) (*this)(v);
+  }
+  // An enumerator up to `last`.
+  template <class E>
+  void choice(E& v, E last) {
+    const uint8_t number = in_.u8();
+    if (number > static_cast<uint8_t>(last)) return in_.fail();
+    v = static_cast<E>(number);
+  }
+  // The fields of every row take at least `least_bytes`, so a hostile count cannot ask for much
+  // memory.
   template <class T>
   void list(std::vector<T>& rows, uint32_t least_bytes) {
-    uint32_t count = in_.count(least_bytes);
-    for (uint32_t i = 0; i < count && !in_.failed(); ++i) fields(*this, rows.emplace_back());
+    const uint32_t count = in_.count(kLengthBytes + least_bytes);
+    for (uint32_t i = 0; i < count && !in_.failed(); ++i) {
+      FieldReader row(in_.blob(), texts_);
+      fields(row, rows.emplace_back());
+      if (row.failed()) in_.fail();
+    }
   }
-  bool done() const { return in_.done(); }
+  void list(std::vector<std::string>& texts, uint32_t least_bytes) {
+    const uint32_t count = in_.count(least_bytes);
+    for (uint32_t i = 0; i < count && !in_.failed(); ++i) (*this)(texts.emplace_back());
+  }
+  bool failed() const { return in_.failed(); }
+  // What a newer sender has written after the fields that are known here.
+  base::ByteSpan rest() { return in_.raw(in_.left()); }
   void fail() { in_.fail(); }
 
  private:
+  static constexpr uint32_t kLengthBytes = 4;
+
   base::ByteReader in_;
   Texts texts_;
 };
-
-inline void fields(FieldWriter& a, const std::string& v) { a(v); }
-inline void fields(FieldReader& a, std::string& v) { a(v); }
 
 base::Error not_understood(const char* what);
 
@@ -87,13 +130,12 @@ base::Bytes write_fields(const T& message) {
   return writer.take();
 }
 
-// The whole of `bytes` must be one message.
 template <class T>
 base::Result<T> read_fields(base::ByteSpan bytes, const char* what) {
   FieldReader reader(bytes);
   T message;
   fields(reader, message);
-  if (!reader.done()) return not_understood(what);
+  if (reader.failed()) return not_understood(what);
   return message;
 }
 

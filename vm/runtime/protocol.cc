@@ -1,5 +1,7 @@
 #include "vm/runtime/protocol.h"
 
+#include <algorithm>
+
 #include "vm/runtime/fields.h"
 
 namespace vm {
@@ -38,6 +40,27 @@ base::Error other_version(uint8_t controller, uint8_t client) {
               " of the protocol, the client version " + std::to_string(client) +
               "; use the stvm that the controller was started with, or start the controller again "
               "with this one"};
+}
+
+bool says_nothing(base::ByteSpan bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0; });
+}
+
+bool has_unknown_flags(const Request& request) {
+  switch (row(request.command).body) {
+    case RequestBody::kStage:
+      return (request.flags & ~kAllStageFlags) != 0;
+    case RequestBody::kSwitch:
+      return (request.flags & ~kAllSwitchFlags) != 0;
+    case RequestBody::kNone:
+    case RequestBody::kNames:
+    case RequestBody::kAssignments:
+    case RequestBody::kPage:
+    case RequestBody::kData:
+    case RequestBody::kFlags:  // a number, which the command checks
+      break;
+  }
+  return false;
 }
 
 // `R` is a Request for reading, a const one for writing.
@@ -236,6 +259,17 @@ void image_fields(A& a, T& part) {
   a(part.bytes);
 }
 
+template <class A, class T>
+void staged_fields(A& a, T& answer) {
+  a(answer.edition);
+}
+
+template <class A, class T>
+void abort_fields(A& a, T& answer) {
+  a(answer.done);
+  a(answer.text);
+}
+
 }  // namespace
 
 #define FIELDS(type, list)                                          \
@@ -252,6 +286,8 @@ FIELDS(Values, values_fields)
 FIELDS(ForceRow, force_fields)
 FIELDS(ForceRows, forces_fields)
 FIELDS(ImagePart, image_fields)
+FIELDS(StagedAnswer, staged_fields)
+FIELDS(AbortAnswer, abort_fields)
 #undef FIELDS
 
 base::Error not_understood(const char* what) {
@@ -274,15 +310,20 @@ base::Result<Request> decode_request(base::ByteSpan bytes) {
   uint8_t version = 0;
   uint8_t command = 0;
   reader(version);
-  if (!bytes.empty() && version != kProtocolVersion) {
-    return other_version(kProtocolVersion, version);
-  }
+  if (!bytes.empty() && version < kOldestRequest) return other_version(kProtocolVersion, version);
   reader(command);
-  if (command >= std::size(kCommands)) return not_understood("unknown command");
+  if (command >= std::size(kCommands)) {
+    return not_understood("unknown command; is the client newer than the controller?");
+  }
   Request request;
   request.command = static_cast<Command>(command);
   request_fields(reader, request);
-  if (!reader.done()) return not_understood("damaged request");
+  if (reader.failed() || (version <= kProtocolVersion && !reader.rest().empty())) {
+    return not_understood("damaged request");
+  }
+  if (!says_nothing(reader.rest()) || has_unknown_flags(request)) {
+    return not_understood("the client asks for something that only a newer controller can do");
+  }
   if (request.names.size() > kMaxNames) return not_understood("too many names");
   if (row(request.command).body == RequestBody::kAssignments &&
       request.names.size() != request.values.size()) {
@@ -311,16 +352,19 @@ base::Bytes encode_answer(const base::Error& error, uint8_t version) {
 
 base::Result<base::Bytes> decode_answer(base::ByteSpan bytes) {
   if (bytes.size() < 2 || bytes[1] > 1) return not_understood("damaged answer");
-  if (bytes[0] != kProtocolVersion) return other_version(bytes[0], kProtocolVersion);
   base::ByteSpan rest = bytes.subspan(2);
-  if (bytes[1] == 1) return base::Bytes(rest.begin(), rest.end());
+  if (bytes[1] == 1) {
+    if (bytes[0] < kOldestAnswer) return other_version(bytes[0], kProtocolVersion);
+    return base::Bytes(rest.begin(), rest.end());
+  }
   FieldReader reader(rest);
   std::string code;
   std::string text;
   reader(code);
   reader(text);
   auto refusal = base::refusal_from_code(code);
-  if (!reader.done() || !refusal) return not_understood("damaged answer");
+  if (reader.failed()) return not_understood("damaged answer");
+  if (!refusal) return base::Error{base::Refusal::kProtocol, code + ": " + text};
   return base::Error{*refusal, text};
 }
 
@@ -329,6 +373,8 @@ base::Bytes encode(const TaskTimes& times) { return write_fields(times); }
 base::Bytes encode(const Values& values) { return write_fields(values); }
 base::Bytes encode(const ForceRows& rows) { return write_fields(rows); }
 base::Bytes encode(const ImagePart& part) { return write_fields(part); }
+base::Bytes encode(const StagedAnswer& answer) { return write_fields(answer); }
+base::Bytes encode(const AbortAnswer& answer) { return write_fields(answer); }
 
 base::Result<StatusReport> decode_status(base::ByteSpan body) {
   return read_fields<StatusReport>(body, "status");
@@ -344,6 +390,12 @@ base::Result<ForceRows> decode_forces(base::ByteSpan body) {
 }
 base::Result<ImagePart> decode_image_part(base::ByteSpan body) {
   return read_fields<ImagePart>(body, "image");
+}
+base::Result<StagedAnswer> decode_staged_answer(base::ByteSpan body) {
+  return read_fields<StagedAnswer>(body, "staged");
+}
+base::Result<AbortAnswer> decode_abort_answer(base::ByteSpan body) {
+  return read_fields<AbortAnswer>(body, "abort");
 }
 
 }  // namespace vm

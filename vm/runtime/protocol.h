@@ -1,8 +1,12 @@
 // The control channel's messages: binary, little endian, each of one
 // version byte, one command or result byte, and a body. Framing: frames.h. Both directions are
-// decoded by the bounded reader, and neither side believes the other. Only sides of one version
-// understand each other; the layout of an error is the same in all of them, so that a client of
-// another version can say what is wrong.
+// decoded by the bounded reader, and neither side believes the other.
+//
+// Sides of neighbouring releases understand each other: from version 13 on messages only grow at
+// their ends (fields.h). An answer may have more fields than its reader knows, or fewer. A request
+// may have more only where they say nothing (zeros), since whoever asks for more would not get it;
+// flags that the controller does not know are refused as well. The layout of an error is the same
+// in all versions, so that a client of an older one can say what is wrong.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +22,10 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 12;
+inline constexpr uint8_t kProtocolVersion = 13;
+// Those that are understood, up to any later one. Recordings hold requests.
+inline constexpr uint8_t kOldestRequest = 12;
+inline constexpr uint8_t kOldestAnswer = 13;
 inline constexpr uint32_t kMaxMessageBytes = 1u << 20;
 inline constexpr uint32_t kMaxNames = 4096;          // in one request
 inline constexpr uint32_t kMaxNameBytes = 65536;     // of a path or a value
@@ -39,18 +46,20 @@ bool changes_state(Command command);
 
 enum SwitchFlags : uint32_t {
   kAllowLoss = 1,
-  kPermanent = 2,     // accept at once
-  kAllowOverrun = 4,  // even if the predicted pause does not fit the tightest task
-  kNoWayBack = 8,     // the controller does not undo it by itself (X7)
+  kPermanent = 2,       // accept at once
+  kAllowOverrun = 4,    // even if the predicted pause does not fit the tightest task
+  kNoWayBack = 8,       // the controller does not undo it by itself (X7)
   kLastEditBoots = 16,  // after a power loss it runs, on trial, and not what was accepted (D4)
-  kMoreToCome = 32,  // the next edit belongs to it: taken back by the controller, both go (E-26)
+  kMoreToCome = 32,     // the next edit belongs to it: taken back by the controller, both go (E-26)
 };
+inline constexpr uint32_t kAllSwitchFlags = 63;
 
 enum StageFlags : uint32_t {
   kByStandby = 1,  // the change prepares a second data area (docs/adr/0011-two-strategies.md)
   kRehearsal = 2,  // only to be looked at: not journalled or stored; also beside another change
   kTableAdditions = 4,  // refused when variables that run become others (E-16)
 };
+inline constexpr uint32_t kAllStageFlags = 7;
 
 // As the name of a request for fates: one line for each variable instead of groups of them.
 inline constexpr const char* kEveryVariable = "every";
@@ -87,13 +96,13 @@ struct TrapRow {
 struct StatusReport {
   std::string name;
   base::Digest running{};
-  uint64_t edition = 0;     // counts switches, undos and accepts
-  std::string change;       // state of the change; "idle"
-  uint64_t edits = 0;       // on trial, also while another one is prepared
+  uint64_t edition = 0;          // counts switches, undos and accepts
+  std::string change;            // state of the change; "idle"
+  uint64_t edits = 0;            // on trial, also while another one is prepared
   bool last_edit_boots = false;  // the newest of them, after a power loss too
-  std::string changed_by;   // who staged it
-  std::string aborted;      // when, and by whom or what, if the last one was, while prepared
-  base::Digest previous{};  // during a trial: what undo brings back
+  std::string changed_by;        // who staged it
+  std::string aborted;           // when, and by whom or what, if the last one was, while prepared
+  base::Digest previous{};       // during a trial: what undo brings back
   base::Digest boots_next{};
   base::Digest trial_lost{};        // the program that was on trial when the last process ended
   std::vector<std::string> alarms;  // of what is stored
@@ -107,7 +116,7 @@ struct StatusReport {
   uint64_t pous = 0;
   uint64_t native_pous = 0;  // that run as machine code; 0: everything is interpreted
   uint64_t native_bytes = 0;
-  uint64_t pous_to_make = 0;  // machine code of so many is still being made
+  uint64_t pous_to_make = 0;             // machine code of so many is still being made
   std::vector<std::string> interpreted;  // "POU: why", the first few, where there is machine code
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;
@@ -125,7 +134,7 @@ struct Values {
   // one (vm/runtime/live_copy.h).
   uint64_t cycle = 0;
   uint64_t last_cycle = 0;
-  uint64_t next = 0;   // of lists: where the next page begins; 0: this was the last
+  uint64_t next = 0;  // of lists: where the next page begins; 0: this was the last
   std::vector<ValueRow> rows;
 };
 
@@ -146,15 +155,29 @@ struct ImagePart {
   base::Bytes bytes;
 };
 
+// A change is prepared: what a switch names.
+struct StagedAnswer {
+  uint64_t edition = 0;
+};
+
+struct AbortAnswer {
+  bool done = false;  // there was something to end
+  std::string text;   // a line for people
+};
+
 base::Bytes encode(const StatusReport& report);
 base::Bytes encode(const TaskTimes& times);
 base::Bytes encode(const Values& values);
 base::Bytes encode(const ForceRows& rows);
 base::Bytes encode(const ImagePart& part);
+base::Bytes encode(const StagedAnswer& answer);
+base::Bytes encode(const AbortAnswer& answer);
 base::Result<StatusReport> decode_status(base::ByteSpan body);
 base::Result<TaskTimes> decode_task_times(base::ByteSpan body);
 base::Result<Values> decode_values(base::ByteSpan body);
 base::Result<ForceRows> decode_forces(base::ByteSpan bytes);
 base::Result<ImagePart> decode_image_part(base::ByteSpan body);
+base::Result<StagedAnswer> decode_staged_answer(base::ByteSpan body);
+base::Result<AbortAnswer> decode_abort_answer(base::ByteSpan body);
 
 }  // namespace vm

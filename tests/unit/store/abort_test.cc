@@ -162,9 +162,10 @@ TEST_F(Aborted, C9_ASwitchThatIsMadeIsNotAborted) {
   EXPECT_FALSE(plc_.service().answer_urgent("operator", vm::encode(abort)).has_value());
   base::Result<base::Bytes> answer = plc_.answer_to(abort);
   ASSERT_TRUE(answer.ok());
-  base::ByteReader in(*answer);
-  EXPECT_FALSE(in.boolean());
-  EXPECT_NE(in.text().find("`stvm undo`"), std::string::npos);
+  base::Result<vm::AbortAnswer> aborted = vm::decode_abort_answer(*answer);
+  ASSERT_TRUE(aborted.ok());
+  EXPECT_FALSE(aborted->done);
+  EXPECT_NE(aborted->text.find("`stvm undo`"), std::string::npos);
   EXPECT_EQ(plc_.status().change, "trial");
 }
 
