@@ -21,6 +21,19 @@ constexpr DiagnosticRow kRows[] = {
 };
 constexpr uint32_t kRowCount = sizeof kRows / sizeof kRows[0];
 
+// The enumeration is made of the table by another way (scripts/enumerations.cmake).
+constexpr DiagnosticCode kCodes[] = {
+#define DIAGNOSTIC(id, code, severity, title, help) DiagnosticCode::id,
+#include "base/diagnostics.def"
+#undef DIAGNOSTIC
+};
+static_assert([] {
+  for (uint32_t i = 0; i < kRowCount; ++i) {
+    if (static_cast<uint32_t>(kCodes[i]) != i) return false;
+  }
+  return true;
+}());
+
 auto sort_key(const Diagnostic& d) {
   return std::make_tuple(d.span.begin.offset, static_cast<uint16_t>(d.code), d.span.end.offset);
 }

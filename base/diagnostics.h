@@ -17,9 +17,9 @@ enum class Severity : uint8_t { kError, kWarning, kNote };
 // Codes: E0xxx lexical, E1xxx syntax, E2xxx names and declarations, E3xxx types,
 // E4xxx statements, E5xxx configuration, E6xxx limits, W0xxx warnings.
 enum class DiagnosticCode : uint16_t {
-#define DIAGNOSTIC(id, code, severity, title, help) id,
-#include "base/diagnostics.def"
-#undef DIAGNOSTIC
+#define NAME(id) id,
+#include "base/diagnostics.def.names"
+#undef NAME
 };
 
 struct DiagnosticRow {

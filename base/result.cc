@@ -17,6 +17,19 @@ constexpr Row kRefusals[] = {
 #undef REFUSAL
 };
 
+// The enumeration is made of the table by another way (scripts/enumerations.cmake).
+constexpr Refusal kCodes[] = {
+#define REFUSAL(id, code, title, help) Refusal::id,
+#include "base/refusals.def"
+#undef REFUSAL
+};
+static_assert([] {
+  for (size_t i = 0; i < std::size(kCodes); ++i) {
+    if (static_cast<size_t>(kCodes[i]) != i) return false;
+  }
+  return true;
+}());
+
 }  // namespace
 
 const char* refusal_code(Refusal refusal) { return kRefusals[static_cast<size_t>(refusal)].code; }

@@ -16,9 +16,9 @@ namespace base {
 // Every reason for which the linker, the verifier, a change, the controller or
 // a tool refuses something. The table is refusals.def; `stc explain` reads it.
 enum class Refusal : uint16_t {
-#define REFUSAL(id, code, title, help) id,
-#include "base/refusals.def"
-#undef REFUSAL
+#define NAME(id) id,
+#include "base/refusals.def.names"
+#undef NAME
 };
 
 const char* refusal_code(Refusal refusal);   // "R0101"

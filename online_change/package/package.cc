@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "ir/bytecode/verify.h"
 #include "online_change/package/delta.h"
+#include "online_change/package/plan_fields.h"
 
 namespace online_change {
 namespace {
@@ -25,160 +26,9 @@ constexpr uint32_t kGatherVersion = 6;
 constexpr uint32_t kShortGatherVersion = 7;
 constexpr const char* kPartNames[] = {"layout", "program", "commands"};
 constexpr size_t kParts = std::size(kPartNames);
-constexpr size_t kMinRowBytes = 1 + 3 * 4 + 1 + 4 + 8 + 4;
-constexpr size_t kMinStepBytes = 2 + 9 * 4 + 4;
-constexpr uint32_t kFateKinds = 5;
-constexpr uint32_t kStepKinds = 6;
-constexpr size_t kMinCallBytes = 5 * 4;
-constexpr size_t kInputBytes = 3 * 4;
-constexpr size_t kGatheredBytes = 3 * 4 + 2;
-
-void write_row(ByteWriter& out, const FateRow& row) {
-  out.u8(static_cast<uint8_t>(row.fate));
-  out.text(row.path);
-  out.text(row.old_type);
-  out.text(row.new_type);
-  out.boolean(row.may_lose);
-  out.text(row.reason);
-  out.u64(row.count);
-  out.text(row.old_path);
-}
-
-FateRow read_row(ByteReader& in) {
-  FateRow row;
-  row.fate = in.enumerator<Fate>(kFateKinds);
-  row.path = in.text();
-  row.old_type = in.text();
-  row.new_type = in.text();
-  row.may_lose = in.boolean();
-  row.reason = in.text();
-  row.count = in.u64();
-  row.old_path = in.text();
-  return row;
-}
-
-void write_step(ByteWriter& out, const UpdateStep& step) {
-  out.u8(static_cast<uint8_t>(step.kind));
-  out.boolean(step.early);
-  for (uint32_t field : {step.from, step.to, step.size, step.count, step.from_stride,
-                         step.to_stride, step.old_type.index, step.new_type.index, step.fate}) {
-    out.u32(field);
-  }
-  out.blob(step.bytes);
-}
-
-UpdateStep read_step(ByteReader& in) {
-  UpdateStep step;
-  step.kind = in.enumerator<StepKind>(kStepKinds);
-  step.early = in.boolean();
-  step.from = in.u32();
-  step.to = in.u32();
-  step.size = in.u32();
-  step.count = in.u32();
-  step.from_stride = in.u32();
-  step.to_stride = in.u32();
-  step.old_type = ir::TypeId(in.u32());
-  step.new_type = ir::TypeId(in.u32());
-  step.fate = in.u32();
-  base::ByteSpan bytes = in.blob();
-  step.bytes.assign(bytes.begin(), bytes.end());
-  return step;
-}
-
-void write_call(ByteWriter& out, const MigrationCall& call) {
-  out.u32(call.row);
-  out.u32(call.instance);
-  out.u32(call.place);
-  out.u32(call.type.index);
-  out.u32(static_cast<uint32_t>(call.inputs.size()));
-  for (const MigrationInput& input : call.inputs) {
-    for (uint32_t field : {input.from, input.type.index, input.slot}) out.u32(field);
-  }
-}
-
-MigrationCall read_call(ByteReader& in) {
-  MigrationCall call;
-  call.row = in.u32();
-  call.instance = in.u32();
-  call.place = in.u32();
-  call.type = ir::TypeId(in.u32());
-  uint32_t inputs = in.count(kInputBytes);
-  for (uint32_t i = 0; i < inputs && !in.failed(); ++i) {
-    MigrationInput input;
-    input.from = in.u32();
-    input.type = ir::TypeId(in.u32());
-    input.slot = in.u32();
-    call.inputs.push_back(input);
-  }
-  return call;
-}
-
-void write_gather(ByteWriter& out, const Gather& gather) {
-  out.u32(static_cast<uint32_t>(gather.size()));
-  for (const GatheredPart& part : gather) {
-    for (uint32_t field : {part.from, part.within, part.size}) out.u32(field);
-    out.u8(part.from_mask);
-    out.u8(part.to_mask);
-  }
-}
-
-Gather read_gather(ByteReader& in) {
-  Gather gather;
-  const uint32_t parts = in.count(kGatheredBytes);
-  for (uint32_t i = 0; i < parts && !in.failed(); ++i) {
-    GatheredPart part;
-    part.from = in.u32();
-    part.within = in.u32();
-    part.size = in.u32();
-    part.from_mask = in.u8();
-    part.to_mask = in.u8();
-    gather.push_back(part);
-  }
-  return gather;
-}
 
 bool has_gathers(const Package& package) {
   return !package.forward.gathers.empty() || !package.inverse.gathers.empty();
-}
-
-void write_plan(ByteWriter& out, const Plan& plan, bool gathers) {
-  out.u32(static_cast<uint32_t>(plan.fates.size()));
-  for (const FateRow& row : plan.fates) write_row(out, row);
-  const FateCounts& counts = plan.counts;
-  for (uint64_t count :
-       {counts.kept, counts.moved, counts.converted, counts.initialised, counts.dropped}) {
-    out.u64(count);
-  }
-  out.u32(static_cast<uint32_t>(plan.steps.size()));
-  for (const UpdateStep& step : plan.steps) write_step(out, step);
-  out.u32(static_cast<uint32_t>(plan.calls.size()));
-  for (const MigrationCall& call : plan.calls) write_call(out, call);
-  if (gathers) {
-    out.u32(static_cast<uint32_t>(plan.gathers.size()));
-    for (const Gather& gather : plan.gathers) write_gather(out, gather);
-  }
-  out.u64(plan.boundary_bytes);
-  out.i64(plan.predicted_pause_ns);
-}
-
-Plan read_plan(ByteReader& in, bool gathers) {
-  Plan plan;
-  uint32_t rows = in.count(kMinRowBytes);
-  for (uint32_t i = 0; i < rows && !in.failed(); ++i) plan.fates.push_back(read_row(in));
-  FateCounts& counts = plan.counts;
-  for (uint64_t* count :
-       {&counts.kept, &counts.moved, &counts.converted, &counts.initialised, &counts.dropped}) {
-    *count = in.u64();
-  }
-  uint32_t steps = in.count(kMinStepBytes);
-  for (uint32_t i = 0; i < steps && !in.failed(); ++i) plan.steps.push_back(read_step(in));
-  uint32_t calls = in.count(kMinCallBytes);
-  for (uint32_t i = 0; i < calls && !in.failed(); ++i) plan.calls.push_back(read_call(in));
-  const uint32_t count = gathers ? in.count(4) : 0;
-  for (uint32_t i = 0; i < count && !in.failed(); ++i) plan.gathers.push_back(read_gather(in));
-  plan.boundary_bytes = in.u64();
-  plan.predicted_pause_ns = in.i64();
-  return plan;
 }
 
 base::Error bad_format(const std::string& what) {
@@ -214,11 +64,8 @@ base::Result<Parts> split(ByteReader& in) {
 }
 
 base::Bytes encode_commands(const Package& package) {
-  ByteWriter commands;
-  commands.raw(package.base);
-  const bool gathers = has_gathers(package);
-  write_plan(commands, package.forward, gathers);
-  write_plan(commands, package.inverse, gathers);
+  base::WriteArchive commands;
+  command_fields(commands, package, has_gathers(package));
   return commands.take();
 }
 
@@ -319,10 +166,8 @@ base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   if (!parts.ok()) return parts.error();
   const auto& [layout, program, commands] = *parts;
   Package package;
-  ByteReader plans(commands);
-  package.base = base::read_digest(plans);
-  package.forward = read_plan(plans, gathers);
-  package.inverse = read_plan(plans, gathers);
+  base::ReadArchive plans(commands);
+  command_fields(plans, package, gathers);
   if (!plans.done()) return bad_format("has a damaged plan");
   if (version == kVersion || version == kGatherVersion) {
     package.image.assign(layout.begin(), layout.end());

@@ -113,11 +113,17 @@ base::Status Store::write_control(const ControlRecord& next) {
   base::check(next.slot < kImageSlots && next.trial_slot < kImageSlots, "a slot is one of three");
   base::check(!next.trial || next.slot != next.trial_slot,
               "what boots and what is on trial lie in two slots");
-  base::dcheck(!in_slot_[next.slot] || in_slot_[next.slot] == next.boots,
+  // What stood in the record before may be damaged since.
+  const auto lies_in = [&](uint32_t slot, const base::Digest& image) {
+    return !in_slot_[slot] || in_slot_[slot] == image;
+  };
+  const bool same_boots = next.slot == control_.slot && next.boots == control_.boots;
+  base::dcheck(same_boots || lies_in(next.slot, next.boots),
                "what boots is in the slot that the control record names");
-  base::dcheck(
-      !next.trial || !in_slot_[next.trial_slot] || in_slot_[next.trial_slot] == next.trial_digest,
-      "what is on trial is in the slot that the control record names");
+  const bool same_trial =
+      next.trial_slot == control_.trial_slot && next.trial_digest == control_.trial_digest;
+  base::dcheck(!next.trial || same_trial || lies_in(next.trial_slot, next.trial_digest),
+               "what is on trial is in the slot that the control record names");
   base::dcheck(next.trial || (next.tries_left == 0 && !next.resumes), "without a trial, no tries");
   control_copies_.check();
   const std::optional<size_t> copy = control_copies_.victim([](size_t) { return false; });

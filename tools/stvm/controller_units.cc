@@ -37,16 +37,14 @@ class FirstRows {
   size_t bytes_ = 0;
 };
 
-template <class Row, class From>
-std::vector<Row> first_of(std::vector<From> all, uint64_t& count) {
+template <class Row>
+std::vector<Row> first_of(std::vector<Row> all, uint64_t& count) {
   count = all.size();
-  std::vector<Row> rows;
   FirstRows first;
-  for (From& row : all) {
-    if (!first.take(row)) break;
-    rows.push_back({std::move(row)});
-  }
-  return rows;
+  size_t taken = 0;
+  while (taken < all.size() && first.take(all[taken])) ++taken;
+  all.resize(taken);
+  return all;
 }
 
 }  // namespace
@@ -71,14 +69,14 @@ TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
   TrialEdit edit;
   edit.from = running.digest();
   edit.to = next.digest();
-  edit.pous = first_of<EditedPou>(online_change::pou_edits(before, after), edit.pou_count);
-  edit.types = first_of<EditedType>(online_change::type_edits(before, after), edit.type_count);
+  edit.pous = first_of(online_change::pou_edits(before, after), edit.pou_count);
+  edit.types = first_of(online_change::type_edits(before, after), edit.type_count);
   FirstRows first;
   for (const online_change::FateRow& row : plan.fates) {
     // Who only moves is as it was.
     if (row.fate == Fate::kMoved || (row.fate == Fate::kKept && row.old_path.empty())) continue;
     ++edit.variable_count;
-    if (first.take(row)) edit.variables.push_back({row});
+    if (first.take(row)) edit.variables.push_back(row);
   }
   return edit;
 }

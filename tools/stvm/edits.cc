@@ -72,7 +72,7 @@ void print_text(const TrialEdit& edit) {
   types.rest(edit.type_count, edit.types.size());
   types.print();
   Line variables("variables");
-  for (const EditedVariable& row : edit.variables) {
+  for (const online_change::FateRow& row : edit.variables) {
     variables.add(row.path + " (" + online_change::fate_name(row.fate) + ")");
   }
   variables.rest(edit.variable_count, edit.variables.size());
@@ -96,7 +96,7 @@ void edit_json(tools::JsonWriter& json, const TrialEdit& edit) {
     json.field("change", online_change::type_change_name(type.change)).end_object();
   }
   json.end_array().field("variable_count", edit.variable_count).key("variables").begin_array();
-  for (const EditedVariable& row : edit.variables) {
+  for (const online_change::FateRow& row : edit.variables) {
     json.begin_object().field("variable", row.path);
     json.field("fate", online_change::fate_name(row.fate));
     json.field("old_type", row.old_type).field("new_type", row.new_type);

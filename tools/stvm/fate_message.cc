@@ -5,18 +5,16 @@
 namespace stvm {
 namespace {
 
-template <class A, class T>
-void count_fields(A& a, T& counts) {
+constexpr auto count_fields = [](auto& a, auto& counts) {
   a(counts.kept);
   a(counts.moved);
   a(counts.converted);
   a(counts.initialised);
   a(counts.dropped);
-}
+};
 
-template <class A, class T>
-void line_fields(A& a, T& line) {
-  a.choice(line.row.fate, online_change::Fate::kDropped);
+constexpr auto line_fields = [](auto& a, auto& line) {
+  a.enumerator(line.row.fate, online_change::Fate::kDropped);
   a(line.row.path);
   a(line.row.old_type);
   a(line.row.new_type);
@@ -29,106 +27,63 @@ void line_fields(A& a, T& line) {
   a(line.row.old_path);
   a(line.old_address);
   a(line.new_address);
-}
+};
 
-template <class A, class T>
-void fate_edit_fields(A& a, T& edit) {
-  a.choice(edit.change, online_change::PouChange::kFollows);
+constexpr auto fate_edit_fields = [](auto& a, auto& edit) {
+  a.enumerator(edit.change, online_change::PouChange::kFollows);
   a(edit.pou);
   a(edit.instances);
   a(edit.what);
-}
+};
 
-template <class A, class T>
-void system_fields(A& a, T& edit) {
+constexpr auto system_fields = [](auto& a, auto& edit) {
   a(edit.kind);
   a(edit.name);
   a(edit.what);
-}
+};
 
-template <class A, class T>
-void loss_fields(A& a, T& loss) {
-  a(loss.path);
-  a(loss.old_value);
-  a(loss.new_value);
-  a(loss.what);
-}
+constexpr auto loss_fields = [](auto& a, auto& line) {
+  a(line.loss.path);
+  a(line.loss.old_value);
+  a(line.loss.new_value);
+  a(line.loss.what);
+};
 
-template <class A, class T>
-void page_fields(A& a, T& page) {
+constexpr auto page_fields = [](auto& a, auto& page) {
   count_fields(a, page.counts);
   a(page.predicted_pause_ns);
   a(page.boundary_bytes);
   a(page.next);
-  a.list(page.lines, 50);
+  a.rows(page.lines, 50, line_fields);
   a(page.loss_count);
-  a.list(page.losses, 16);
-  a.list(page.edits, 17);
-  a.list(page.system, 12);
-}
+  a.rows(page.losses, 16, loss_fields);
+  a.rows(page.edits, 17, fate_edit_fields);
+  a.rows(page.system, 12, system_fields);
+};
 
-template <class A, class T>
-void report_fields(A& a, T& report) {
+constexpr auto report_fields = [](auto& a, auto& report) {
   a(report.cycle_before);
   a(report.cycle_after);
   a(report.pause_ns);
   a(report.missed);
   count_fields(a, report.counts);
   a(report.ago_ns);
-}
+};
 
 }  // namespace
 
-}  // namespace stvm
-
-// list() finds functions in the namespace of its rows.
-namespace tools {
-
-static void fields(vm::FieldWriter& a, const FateLine& line) { stvm::line_fields(a, line); }
-static void fields(vm::FieldReader& a, FateLine& line) { stvm::line_fields(a, line); }
-
-}  // namespace tools
-
-namespace online_change {
-
-static void fields(vm::FieldWriter& a, const PouEdit& edit) { stvm::fate_edit_fields(a, edit); }
-static void fields(vm::FieldReader& a, PouEdit& edit) { stvm::fate_edit_fields(a, edit); }
-static void fields(vm::FieldWriter& a, const SystemEdit& edit) { stvm::system_fields(a, edit); }
-static void fields(vm::FieldReader& a, SystemEdit& edit) { stvm::system_fields(a, edit); }
-
-}  // namespace online_change
-
-namespace stvm {
-
-static void fields(vm::FieldWriter& a, const LossLine& line) { loss_fields(a, line.loss); }
-static void fields(vm::FieldReader& a, LossLine& line) { loss_fields(a, line.loss); }
-
-base::Bytes encode(const FatePage& page) {
-  vm::FieldWriter writer;
-  page_fields(writer, page);
-  return writer.take();
-}
+base::Bytes encode(const FatePage& page) { return vm::write_fields(page, page_fields); }
 
 base::Result<FatePage> decode_fate_page(base::ByteSpan body) {
-  vm::FieldReader reader(body);
-  FatePage page;
-  page_fields(reader, page);
-  if (reader.failed()) return vm::not_understood("fate report");
-  return page;
+  return vm::read_fields<FatePage>(body, "fate report", page_fields);
 }
 
 base::Bytes encode(const online_change::SwitchReport& report) {
-  vm::FieldWriter writer;
-  report_fields(writer, report);
-  return writer.take();
+  return vm::write_fields(report, report_fields);
 }
 
 base::Result<online_change::SwitchReport> decode_switch_report(base::ByteSpan body) {
-  vm::FieldReader reader(body);
-  online_change::SwitchReport report;
-  report_fields(reader, report);
-  if (reader.failed()) return vm::not_understood("report of the switch");
-  return report;
+  return vm::read_fields<online_change::SwitchReport>(body, "report of the switch", report_fields);
 }
 
 }  // namespace stvm

@@ -42,12 +42,6 @@ struct UnitPage {
   std::vector<UnitRow> rows;
 };
 
-// Rows of an edit, in types of their own: reports have other fields of the same rows, and
-// FieldWriter::list() knows a row by its type.
-struct EditedPou : online_change::PouEdit {};
-struct EditedType : online_change::TypeEdit {};
-struct EditedVariable : online_change::FateRow {};
-
 // One edit on trial, or one that was undone and can be brought again.
 struct TrialEdit {
   std::string name;  // "E1"
@@ -58,11 +52,11 @@ struct TrialEdit {
   int64_t time_ns = 0;
   std::string who;
   // The first of each, and how many there are.
-  std::vector<EditedPou> pous;
+  std::vector<online_change::PouEdit> pous;
   uint64_t pou_count = 0;
-  std::vector<EditedType> types;
+  std::vector<online_change::TypeEdit> types;
   uint64_t type_count = 0;
-  std::vector<EditedVariable> variables;
+  std::vector<online_change::FateRow> variables;
   uint64_t variable_count = 0;
 };
 

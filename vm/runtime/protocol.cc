@@ -32,8 +32,6 @@ constexpr CommandRow kCommands[] = {
 
 const CommandRow& row(Command command) { return kCommands[static_cast<size_t>(command)]; }
 
-constexpr uint32_t kTextBytes = 4;  // of an empty one
-
 base::Error other_version(uint8_t controller, uint8_t client) {
   return {base::Refusal::kProtocol,
           "the controller speaks version " + std::to_string(controller) +
@@ -74,15 +72,15 @@ void request_fields(A& a, R& request) {
     case RequestBody::kNone:
       break;
     case RequestBody::kNames:
-      a.list(request.names, kTextBytes);
+      a.texts(request.names);
       break;
     case RequestBody::kAssignments:
-      a.list(request.names, kTextBytes);
-      a.list(request.values, kTextBytes);
+      a.texts(request.names);
+      a.texts(request.values);
       break;
     case RequestBody::kPage:
       a(request.offset);
-      a.list(request.names, kTextBytes);
+      a.texts(request.names);
       break;
     case RequestBody::kData:
       a(request.offset);
@@ -91,39 +89,36 @@ void request_fields(A& a, R& request) {
     case RequestBody::kStage:
       a(request.digest);
       a(request.flags);
-      a.list(request.names, kTextBytes);
+      a.texts(request.names);
       break;
     case RequestBody::kFlags:
       a(request.flags);
       break;
     case RequestBody::kSwitch:
       a(request.flags);
-      a.list(request.names, kTextBytes);
+      a.texts(request.names);
       break;
   }
 }
 
-template <class A, class T>
-void summary_fields(A& a, T& times) {
+constexpr auto summary_fields = [](auto& a, auto& times) {
   a(times.min);
   a(times.average);
   a(times.p99);
   a(times.max);
   a(times.total);
-}
+};
 
-template <class A, class T>
-void class_fields(A& a, T& row) {
+constexpr auto class_fields = [](auto& a, auto& row) {
   a(row.end_ns);
   a(row.count);
-}
+};
 
-template <class A, class T>
-void times_fields(A& a, T& task) {
+constexpr auto times_fields = [](auto& a, auto& task) {
   a(task.name);
-  a.list(task.run, 16);
-  a.list(task.delay, 16);
-}
+  a.rows(task.run, 16, class_fields);
+  a.rows(task.delay, 16, class_fields);
+};
 
 void activity_fields(FieldWriter& a, const TaskActivity& activity) { a(packed(activity)); }
 
@@ -134,8 +129,7 @@ void activity_fields(FieldReader& a, TaskActivity& activity) {
   if (packed(activity) != bits) a.fail();  // a state or kind that there is not
 }
 
-template <class A, class T>
-void task_fields(A& a, T& task) {
+constexpr auto task_fields = [](auto& a, auto& task) {
   a(task.name);
   a(task.period_ns);
   a(task.priority);
@@ -150,20 +144,18 @@ void task_fields(A& a, T& task) {
   a(task.once);
   a(task.recent_ns);
   activity_fields(a, task.activity);
-}
+};
 
-template <class A, class T>
-void trap_fields(A& a, T& trap) {
+constexpr auto trap_fields = [](auto& a, auto& trap) {
   a(trap.cycle);
   a(trap.task);
   a(trap.text.pou);
   a(trap.text.file);
   a(trap.text.line);
   a(trap.text.text);
-}
+};
 
-template <class A, class T>
-void device_fields(A& a, T& device) {
+constexpr auto device_fields = [](auto& a, auto& device) {
   a(device.name);
   a(device.driver);
   a(device.state);
@@ -174,34 +166,30 @@ void device_fields(A& a, T& device) {
   a(device.writes);
   a(device.last_writer);
   a(device.error_age_ns);
-}
+};
 
-template <class A, class T>
-void value_fields(A& a, T& value) {
+constexpr auto value_fields = [](auto& a, auto& value) {
   a(value.path);
   a(value.type);
   a(value.value);
-}
+};
 
-template <class A, class T>
-void room_fields(A& a, T& room) {
+constexpr auto room_fields = [](auto& a, auto& room) {
   a(room.areas);
   a(room.used);
   a(room.slack);
-}
+};
 
-template <class A, class T>
-void memory_fields(A& a, T& memory) {
+constexpr auto memory_fields = [](auto& a, auto& memory) {
   a(memory.capacity);
   a(memory.free);
   a(memory.largest_free);
   room_fields(a, memory.globals);
   room_fields(a, memory.programs);
   room_fields(a, memory.instances);
-}
+};
 
-template <class A, class T>
-void status_fields(A& a, T& report) {
+constexpr auto status_fields = [](auto& a, auto& report) {
   a(report.name);
   a(report.running);
   a(report.edition);
@@ -213,7 +201,7 @@ void status_fields(A& a, T& report) {
   a(report.previous);
   a(report.boots_next);
   a(report.trial_lost);
-  a.list(report.alarms, kTextBytes);
+  a.texts(report.alarms);
   a(report.cycles);
   a(report.uptime_ns);
   a(report.base_period_ns);
@@ -225,70 +213,46 @@ void status_fields(A& a, T& report) {
   a(report.native_pous);
   a(report.native_bytes);
   a(report.pous_to_make);
-  a.list(report.interpreted, kTextBytes);
-  a.list(report.tasks, 134);
-  a.list(report.traps, 28);
-  a.list(report.devices, 40);
-}
+  a.texts(report.interpreted);
+  a.rows(report.tasks, 134, task_fields);
+  a.rows(report.traps, 28, trap_fields);
+  a.rows(report.devices, 40, device_fields);
+};
 
-template <class A, class T>
-void values_fields(A& a, T& values) {
+constexpr auto values_fields = [](auto& a, auto& values) {
   a(values.cycle);
   a(values.last_cycle);
   a(values.next);
-  a.list(values.rows, 3 * kTextBytes);
-}
+  a.rows(values.rows, 3 * kTextBytes, value_fields);
+};
 
-template <class A, class T>
-void force_fields(A& a, T& row) {
+constexpr auto force_fields = [](auto& a, auto& row) {
   a(row.path);
   a(row.type);
   a(row.value);
   a(row.reason);
-}
+};
 
-template <class A, class T>
-void forces_fields(A& a, T& forces) {
-  a.list(forces.rows, 4 * kTextBytes);
-}
+constexpr auto forces_fields = [](auto& a, auto& forces) {
+  a.rows(forces.rows, 4 * kTextBytes, force_fields);
+};
 
-template <class A, class T>
-void image_fields(A& a, T& part) {
+constexpr auto image_fields = [](auto& a, auto& part) {
   a(part.digest);
   a(part.total);
   a(part.bytes);
-}
+};
 
-template <class A, class T>
-void staged_fields(A& a, T& answer) {
+constexpr auto staged_fields = [](auto& a, auto& answer) {
   a(answer.edition);
-}
+};
 
-template <class A, class T>
-void abort_fields(A& a, T& answer) {
+constexpr auto abort_fields = [](auto& a, auto& answer) {
   a(answer.done);
   a(answer.text);
-}
+};
 
 }  // namespace
-
-#define FIELDS(type, list)                                          \
-  static void fields(FieldWriter& a, const type& v) { list(a, v); } \
-  static void fields(FieldReader& a, type& v) { list(a, v); }
-FIELDS(TaskStatus, task_fields)
-FIELDS(TimeClass, class_fields)
-FIELDS(TaskTimes, times_fields)
-FIELDS(TrapRow, trap_fields)
-FIELDS(DeviceStatus, device_fields)
-FIELDS(ValueRow, value_fields)
-FIELDS(StatusReport, status_fields)
-FIELDS(Values, values_fields)
-FIELDS(ForceRow, force_fields)
-FIELDS(ForceRows, forces_fields)
-FIELDS(ImagePart, image_fields)
-FIELDS(StagedAnswer, staged_fields)
-FIELDS(AbortAnswer, abort_fields)
-#undef FIELDS
 
 base::Error not_understood(const char* what) {
   return {base::Refusal::kProtocol, std::string("message not understood: ") + what};
@@ -368,34 +332,34 @@ base::Result<base::Bytes> decode_answer(base::ByteSpan bytes) {
   return base::Error{*refusal, text};
 }
 
-base::Bytes encode(const StatusReport& report) { return write_fields(report); }
-base::Bytes encode(const TaskTimes& times) { return write_fields(times); }
-base::Bytes encode(const Values& values) { return write_fields(values); }
-base::Bytes encode(const ForceRows& rows) { return write_fields(rows); }
-base::Bytes encode(const ImagePart& part) { return write_fields(part); }
-base::Bytes encode(const StagedAnswer& answer) { return write_fields(answer); }
-base::Bytes encode(const AbortAnswer& answer) { return write_fields(answer); }
+base::Bytes encode(const StatusReport& report) { return write_fields(report, status_fields); }
+base::Bytes encode(const TaskTimes& times) { return write_fields(times, times_fields); }
+base::Bytes encode(const Values& values) { return write_fields(values, values_fields); }
+base::Bytes encode(const ForceRows& rows) { return write_fields(rows, forces_fields); }
+base::Bytes encode(const ImagePart& part) { return write_fields(part, image_fields); }
+base::Bytes encode(const StagedAnswer& answer) { return write_fields(answer, staged_fields); }
+base::Bytes encode(const AbortAnswer& answer) { return write_fields(answer, abort_fields); }
 
 base::Result<StatusReport> decode_status(base::ByteSpan body) {
-  return read_fields<StatusReport>(body, "status");
+  return read_fields<StatusReport>(body, "status", status_fields);
 }
 base::Result<TaskTimes> decode_task_times(base::ByteSpan body) {
-  return read_fields<TaskTimes>(body, "times");
+  return read_fields<TaskTimes>(body, "times", times_fields);
 }
 base::Result<Values> decode_values(base::ByteSpan body) {
-  return read_fields<Values>(body, "values");
+  return read_fields<Values>(body, "values", values_fields);
 }
 base::Result<ForceRows> decode_forces(base::ByteSpan body) {
-  return read_fields<ForceRows>(body, "forces");
+  return read_fields<ForceRows>(body, "forces", forces_fields);
 }
 base::Result<ImagePart> decode_image_part(base::ByteSpan body) {
-  return read_fields<ImagePart>(body, "image");
+  return read_fields<ImagePart>(body, "image", image_fields);
 }
 base::Result<StagedAnswer> decode_staged_answer(base::ByteSpan body) {
-  return read_fields<StagedAnswer>(body, "staged");
+  return read_fields<StagedAnswer>(body, "staged", staged_fields);
 }
 base::Result<AbortAnswer> decode_abort_answer(base::ByteSpan body) {
-  return read_fields<AbortAnswer>(body, "abort");
+  return read_fields<AbortAnswer>(body, "abort", abort_fields);
 }
 
 }  // namespace vm

@@ -217,7 +217,7 @@ void Version::link(const Version* base, uint32_t slack, bool move) {
   add_children(0, base, move);
   for (const auto& [name, type] : programs_) add_instance(0, name, type, base, move);
   for (const auto& [at, bytes] : initial_) image.data.push_back({at, bytes});
-  image.data_capacity = 1u << 20;
+  image.data_capacity = std::max(1u << 20, next_area_);
 }
 
 Running::Running(const Version& version)

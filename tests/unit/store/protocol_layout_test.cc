@@ -126,11 +126,11 @@ EditPage edits() {
   edit.cycle = 3;
   edit.time_ns = 4;
   edit.who = "operator";
-  edit.pous = {{{online_change::PouChange::kBody, "Main", 5, "what"}}};
+  edit.pous = {{online_change::PouChange::kBody, "Main", 5, "what"}};
   edit.pou_count = 6;
-  edit.types = {{{online_change::TypeChange::kRemoved, "Box"}}};
+  edit.types = {{online_change::TypeChange::kRemoved, "Box"}};
   edit.type_count = 7;
-  edit.variables = {{fates().lines.front().row}};
+  edit.variables = {fates().lines.front().row};
   edit.variable_count = 8;
   return {9, {edit}};
 }
