@@ -26,5 +26,24 @@ rule using_namespace "$(lines_matching '^ *using namespace')"
 rule naked_new "$(lines_matching '^[^/"]*[=(] *new [A-Z]')"
 rule long_files "$(wc -l $sources | awk '$2 != "total" && $1 > 400' | wc -l)"
 rule headers_without_contract "$(for f in $(echo "$sources" | grep '\.h$'); do head -1 "$f" | grep -q '^//' || echo "$f"; done | wc -l)"
+
+# Who touches a member of a class, may touch every other: methods and friends of each class that a
+# header declares. The classes named here are to shrink; the last rules are for all others.
+sizes=$(awk -f tests/meta/class_sizes.awk $(echo "$sources" | grep '\.h$'))
+most_of() {  # most_of COLUMN [CLASS...]: the most that a class has, apart from the named ones
+  column=$1
+  shift
+  echo "$sizes" | awk -v column="$column" -v apart=" $* " \
+    'index(apart, " " $1 " ") == 0 && $column > most {most = $column} END {print most + 0}'
+}
+size_of() {  # size_of COLUMN CLASS
+  echo "$sizes" | awk -v column="$1" -v class="$2" \
+    '$1 == class && $column > most {most = $column} END {print most + 0}'
+}
+large="Body Parser Sema"
+for class in $large; do rule "methods_of_$class" "$(size_of 2 "$class")"; done
+rule methods_of_another_class "$(most_of 2 $large)"
+rule friends_of_Sema "$(size_of 3 Sema)"
+rule friends_of_another_class "$(most_of 3 Sema)"
 [ $status -eq 0 ] && echo "all rules hold"
 exit $status
