@@ -98,7 +98,7 @@ void declare_all(Sema& sema) {
 }
 
 void lower_body(Sema& sema, uint32_t pou) {
-  if (sema.pous[pou].id.valid()) Body(sema, pou).run();
+  if (sema.declared.pous[pou].id.valid()) Body(sema, pou).run();
 }
 
 void check_uses(Sema& sema) {
@@ -135,7 +135,7 @@ std::optional<Analysed> analyse(Purpose purpose, Parsed& parsed, bool once,
   // Grows while bodies use functions in new instances.
   std::optional<FinishedBodies> finished;
   if (once && coverage == nullptr) finished.emplace(sema, parsed.tree);
-  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
+  for (uint32_t pou = 0; pou < sema.declared.pous.size(); ++pou) {
     lower_body(sema, pou);
     if (finished) finished->finish(pou);
   }

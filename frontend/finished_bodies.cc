@@ -30,7 +30,7 @@ FinishedBodies::FinishedBodies(Sema& sema, Tree& tree) : sema_(sema), tree_(tree
     const uint32_t last = (pou.exprs.first + pou.exprs.count - 1) / kChunk;
     for (uint32_t chunk = pou.exprs.first / kChunk; chunk <= last; ++chunk) ++open_[chunk];
   }
-  for (const PouInfo& info : sema.pous) {
+  for (const PouInfo& info : sema.declared.pous) {
     const auto top = top_of_.find(info.decl);
     if (top == top_of_.end()) continue;
     uint32_t& left = left_[top->second];
@@ -45,7 +45,7 @@ void FinishedBodies::number(const PouDecl& pou, uint32_t top) {
 }
 
 void FinishedBodies::finish(uint32_t pou) {
-  const auto top = top_of_.find(sema_.pous[pou].decl);
+  const auto top = top_of_.find(sema_.declared.pous[pou].decl);
   if (top == top_of_.end()) return;
   uint32_t& left = left_[top->second];
   // A body that came later (an instance, or one of the library) was not counted: its POU stays.
@@ -59,7 +59,7 @@ void FinishedBodies::give_back(const PouDecl& pou) {
   const uint32_t last = (pou.exprs.first + pou.exprs.count - 1) / kChunk;
   for (uint32_t chunk = pou.exprs.first / kChunk; chunk <= last; ++chunk) {
     if (--open_[chunk] != 0) continue;
-    sema_.notes.drop(tree_.exprs.chunk_of_bodies(chunk));
+    sema_.facts.notes.drop(tree_.exprs.chunk_of_bodies(chunk));
     tree_.exprs.give_back_bodies(chunk);
   }
 }

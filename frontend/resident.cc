@@ -95,8 +95,8 @@ bool Resident::can_follow() const {
 
 Resident::Sizes Resident::sizes() const {
   const ir::Program& program = sema_->program;
-  return {program.types.size(), static_cast<uint32_t>(sema_->variables_.size()),
-          static_cast<uint32_t>(sema_->pous.size()),
+  return {program.types.size(), static_cast<uint32_t>(sema_->declared.variables.size()),
+          static_cast<uint32_t>(sema_->declared.pous.size()),
           static_cast<uint32_t>(program.types[program.globals].members.size()),
           static_cast<uint32_t>(sema_->addresses.direct_uses.size())};
 }
@@ -113,7 +113,7 @@ void Resident::run_body(uint32_t pou, uint32_t next_type, BodyRecord& record) {
   lower_body(sema, pou);
   sema.log = nullptr;
   ++lowered_;
-  const PouInfo& info = sema.pous[pou];
+  const PouInfo& info = sema.declared.pous[pou];
   record.behind = sizes();
   record.end_constant = constants.next();
   record.other_lines = log.other_lines;
@@ -130,14 +130,14 @@ void Resident::lower_all_bodies() {
   bodies_.clear();
   heads_.clear();
   std::vector<uint8_t> declared;  // what declarations mark
-  for (const Variable& variable : sema.variables_) {
+  for (const Variable& variable : sema.declared.variables) {
     declared.push_back(variable.used);
     declared.push_back(variable.written);
   }
   before_ = diagnostics_.all();
-  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
+  for (uint32_t pou = 0; pou < sema.declared.pous.size(); ++pou) {
     BodyRecord& record = bodies_.emplace_back();
-    const ir::PouId id = sema.pous[pou].id;
+    const ir::PouId id = sema.declared.pous[pou].id;
     if (!id.valid()) continue;
     if (heads_.size() <= id.index) {
       heads_.resize(id.index + 1);
@@ -151,14 +151,14 @@ void Resident::lower_all_bodies() {
     record.messages.assign(diagnostics_.all().begin() + static_cast<ptrdiff_t>(messages),
                            diagnostics_.all().end());
   }
-  marks_.assign(2 * sema.variables_.size(), 0);
+  marks_.assign(2 * sema.declared.variables.size(), 0);
   std::copy(declared.begin(), declared.end(), marks_.begin());
   for (const BodyRecord& record : bodies_) {
     for (const uint32_t mark : record.marks) ++marks_[mark];
   }
-  for (size_t i = 0; i < sema.variables_.size(); ++i) {  // of those that came with a body
-    if (sema.variables_[i].used && marks_[2 * i] == 0) marks_[2 * i] = 1;
-    if (sema.variables_[i].written && marks_[2 * i + 1] == 0) marks_[2 * i + 1] = 1;
+  for (size_t i = 0; i < sema.declared.variables.size(); ++i) {  // of those that came with a body
+    if (sema.declared.variables[i].used && marks_[2 * i] == 0) marks_[2 * i] = 1;
+    if (sema.declared.variables[i].written && marks_[2 * i + 1] == 0) marks_[2 * i + 1] = 1;
   }
 }
 
@@ -169,13 +169,13 @@ bool Resident::is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t p
   if (!now.marks.empty() && now.marks.back() >= 2 * old.before.variables) return false;
   const auto known = [&](uint32_t callee) { return callee < old.before.pous; };
   if (!std::all_of(now.callees.begin(), now.callees.end(), known)) return false;
-  const ir::Pou& code = program.pous[sema_->pous[pou].id.index];
+  const ir::Pou& code = program.pous[sema_->declared.pous[pou].id.index];
   if (globals_below(code) > old.before.globals) return false;
   if (now.prototypes != old.prototypes || !same_writes(now.writes, old.writes)) return false;
   if (now.callees == old.callees) return true;
   // A program that somebody calls does not run by itself.
   const auto is_program = [&](uint32_t callee) {
-    return sema_->pous[callee].decl->kind == PouKind::kProgram;
+    return sema_->declared.pous[callee].decl->kind == PouKind::kProgram;
   };
   return std::none_of(now.callees.begin(), now.callees.end(), is_program) &&
          std::none_of(old.callees.begin(), old.callees.end(), is_program);
@@ -185,7 +185,7 @@ bool Resident::is_alike(const BodyRecord& old, const BodyRecord& now, uint32_t p
 bool Resident::lower_anew(uint32_t pou, Undo& undo) {
   Sema& sema = *sema_;
   BodyRecord& old = bodies_[pou];
-  PouInfo& info = sema.pous[pou];
+  PouInfo& info = sema.declared.pous[pou];
   Sizes with_types = old.before;
   with_types.types = old.behind.types;
   if (with_types != old.behind || !old.in_turn || !info.outer_uses.empty()) return false;
@@ -232,7 +232,7 @@ bool Resident::lower_anew(uint32_t pou, Undo& undo) {
 void Resident::undo_edits(Undo& undo) {
   ir::Program& program = sema_->program;
   for (auto code = undo.codes.rbegin(); code != undo.codes.rend(); ++code) {
-    PouInfo& info = sema_->pous[code->pou];
+    PouInfo& info = sema_->declared.pous[code->pou];
     BodyRecord& record = bodies_[code->pou];
     count_marks(record.marks, false);
     count_marks(code->record.marks, true);
@@ -254,10 +254,11 @@ void Resident::undo_edits(Undo& undo) {
 }
 
 void Resident::count_marks(const std::vector<uint32_t>& marks, bool more) {
-  if (marks_.size() < 2 * sema_->variables_.size()) marks_.resize(2 * sema_->variables_.size());
+  if (marks_.size() < 2 * sema_->declared.variables.size())
+    marks_.resize(2 * sema_->declared.variables.size());
   for (const uint32_t mark : marks) {
     marks_[mark] += more ? 1u : ~0u;
-    Variable& variable = sema_->variables_[mark / 2];
+    Variable& variable = sema_->declared.variables[mark / 2];
     (mark % 2 == 0 ? variable.used : variable.written) = marks_[mark] != 0;
   }
 }
@@ -265,7 +266,7 @@ void Resident::count_marks(const std::vector<uint32_t>& marks, bool more) {
 bool Resident::lower_again(ir::PouId id) {
   Sema& sema = *sema_;
   const BodyRecord& record = bodies_[number_of_[id.index]];
-  PouInfo& info = sema.pous[number_of_[id.index]];
+  PouInfo& info = sema.declared.pous[number_of_[id.index]];
   ir::Program& program = sema.program;
   program.pous[id.index] = heads_[id.index];
   program.constants.set_next(record.first_constant);
@@ -284,10 +285,10 @@ bool Resident::lower_again(ir::PouId id) {
 std::vector<std::vector<ir::PouId>> Resident::callees() const {
   std::vector<std::vector<ir::PouId>> out(sema_->program.pous.size());
   for (uint32_t pou = 0; pou < bodies_.size(); ++pou) {
-    if (!sema_->pous[pou].id.valid()) continue;
+    if (!sema_->declared.pous[pou].id.valid()) continue;
     for (const uint32_t callee : bodies_[pou].callees) {
-      const ir::PouId id = sema_->pous[callee].id;
-      if (id.valid()) out[sema_->pous[pou].id.index].push_back(id);
+      const ir::PouId id = sema_->declared.pous[callee].id;
+      if (id.valid()) out[sema_->declared.pous[pou].id.index].push_back(id);
     }
   }
   return out;

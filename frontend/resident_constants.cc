@@ -44,11 +44,11 @@ bool Resident::may_move_constants(uint32_t pou) const {
   }
   const auto starts_before = [&](const ir::ProgramInstance& row) { return before(row.init); };
   return std::all_of(program.instances.begin(), program.instances.end(), starts_before) &&
-         std::all_of(sema_->variables_.begin(), sema_->variables_.end(),
+         std::all_of(sema_->declared.variables.begin(), sema_->declared.variables.end(),
                      [&](const Variable& variable) { return before(variable.init); }) &&
-         std::all_of(sema_->specs_.begin(), sema_->specs_.end(),
+         std::all_of(sema_->facts.specs.begin(), sema_->facts.specs.end(),
                      [&](const SpecInfo& spec) { return before(spec.use.init); }) &&
-         std::none_of(sema_->pous.begin(), sema_->pous.end(),
+         std::none_of(sema_->declared.pous.begin(), sema_->declared.pous.end(),
                       [](const PouInfo& info) { return info.meaning != nullptr; });
 }
 
@@ -68,7 +68,7 @@ void Resident::replace_constants(uint32_t pou, Values values) {
   const size_t size = record.first_constant + values.size();
   set_constants(record.first_constant, values, static_cast<uint32_t>(size));
   for (uint32_t number = pou + 1; number < bodies_.size(); ++number) {
-    if (!sema_->pous[number].id.valid()) continue;
+    if (!sema_->declared.pous[number].id.valid()) continue;
     bodies_[number].first_constant += record.end_constant - old_end;
     bodies_[number].end_constant += record.end_constant - old_end;
   }

@@ -15,7 +15,7 @@ constexpr uint32_t kMoreBytes = 4u << 20;
 
 // The declarations of a tree, put away while others are parsed: who refers to them by address
 // finds them where they were.
-struct Declarations {
+struct PutAway {
   std::vector<TypeDecl> types;
   std::vector<PouDecl> pous;
   std::vector<VarBlock> globals;
@@ -80,13 +80,13 @@ std::optional<Resident::Edit> Resident::read_edit(uint32_t number, std::string_v
   LexOptions lexing;
   lexing.defines = options_.defines;
   base::Diagnostics messages;
-  Declarations known;
+  PutAway known;
   known.swap(tree);
   parse(sources, edit.text, tree, messages, lexing);
   known.swap(tree);
   edit.pous = std::move(known.pous);
-  sema_->notes.grow(tree.exprs.end());
-  sema_->specs_.resize(tree.specs.size());
+  sema_->facts.notes.grow(tree.exprs.end());
+  sema_->facts.specs.resize(tree.specs.size());
   found_errors_ = messages.has_errors();
   if (!messages.all().empty() || tree.levels.size() != levels) return std::nullopt;
   edit.now = code_places(edit.pous, sources, edit.text);
@@ -164,7 +164,7 @@ bool Resident::lower_edited(const std::vector<Edit>& edits, Update& update, Undo
   for (const Edit& edit : edits) {
     for (const size_t i : edit.bodies.changed) changed.insert(files_[edit.file].places[i].pou);
   }
-  for (const PouInfo& info : sema_->pous) {
+  for (const PouInfo& info : sema_->declared.pous) {
     if (!info.id.valid() || !changed.contains(info.decl)) continue;
     const uint32_t end = bodies_[info.number].end_constant;
     if (info.made != MadeCode::kNone || !lower_anew(info.number, undo)) return false;

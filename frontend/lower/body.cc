@@ -9,7 +9,8 @@
 namespace frontend {
 
 Body::Body(Sema& sema, uint32_t pou)
-    : Body(sema, sema.pous[pou], pou, sema.program.pous[sema.pous[pou].id.index]) {}
+    : Body(sema, sema.declared.pous[pou], pou,
+           sema.program.pous[sema.declared.pous[pou].id.index]) {}
 
 Body::Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou)
     : sema_(sema),
@@ -55,7 +56,7 @@ void Body::run() {
   // A prototype: no virtual call ends here.
   const bool prototype =
       info_.owner != kNoPou &&
-      (decl.is_abstract || sema_.pous[info_.owner].decl->kind == PouKind::kInterface);
+      (decl.is_abstract || sema_.declared.pous[info_.owner].decl->kind == PouKind::kInterface);
   if (prototype && build_.reachable()) build_.trap(ir::TrapKind::kReference);
   set_line({decl.span.end, decl.span.end});
   if (exit_.valid()) {

@@ -172,7 +172,7 @@ void Body::take_outputs(std::vector<Binding>& bindings,
 }
 
 void Body::call_instance(const Expr& call, uint32_t pou) {
-  const PouInfo& block = sema_.pous[pou];
+  const PouInfo& block = sema_.declared.pous[pou];
   info_.callees.push_back(pou);
   std::vector<Binding> bindings;
   bool good = bind_arguments(call, block, bindings) && check_in_outs(call, block, bindings);
@@ -197,7 +197,7 @@ void Body::call_instance(const Expr& call, uint32_t pou) {
 
 // SUPER^(): parameters are members of the own instance.
 void Body::call_base(const Expr& call, uint32_t pou) {
-  const PouInfo& base = sema_.pous[pou];
+  const PouInfo& base = sema_.declared.pous[pou];
   info_.callees.push_back(pou);
   std::vector<Binding> bindings;
   if (!bind_arguments(call, base, bindings)) return;
@@ -240,7 +240,7 @@ ir::Place Body::argument_place(const PouInfo& callee, const Variable& variable) 
 }
 
 Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wants_result) {
-  const PouInfo& function = sema_.pous[callee.pou];
+  const PouInfo& function = sema_.declared.pous[callee.pou];
   const bool method = callee.kind == Callee::Kind::kMethod;
   if (!method) info_.callees.push_back(callee.pou);
   std::vector<Binding> bindings;

@@ -69,7 +69,7 @@ bool ChartBody::find_places() {
     if (found == body_.info_.names.end()) return VarId();
     const Variable& resolved = sema_.resolve(found->second);
     bool own = resolved.decl != nullptr && resolved.decl->implied && resolved.type.valid();
-    own = own && (member == nullptr || sema_.find_member(resolved.type, member) >= 0);
+    own = own && (member == nullptr || sema_.declared.find_member(resolved.type, member) >= 0);
     return own ? found->second : VarId();
   };
   bool good = true;
@@ -153,7 +153,7 @@ ir::Place ChartBody::part(VarId id, const char* member) {
   ir::Place place = body_.member_variable_place(variable);
   ir::Step& step = place.steps.emplace_back();
   step.kind = ir::StepKind::kMember;
-  step.index = static_cast<uint32_t>(sema_.find_member(variable.type, member));
+  step.index = static_cast<uint32_t>(sema_.declared.find_member(variable.type, member));
   place.type = body_.types()[variable.type].members[step.index].type;
   return place;
 }

@@ -7,7 +7,7 @@
 namespace frontend {
 
 std::optional<Body::Enable> Body::enable_of(const Expr& call, const Callee& callee) {
-  const PouInfo* pou = callee.pou == kNoPou ? nullptr : &sema_.pous[callee.pou];
+  const PouInfo* pou = callee.pou == kNoPou ? nullptr : &sema_.declared.pous[callee.pou];
   Enable enable;
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
@@ -91,8 +91,8 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
   ir::ValueId result = build_.add_param(enable->done, scalar(own));
   ir::ValueId value = emit_call(expr, callee, own);
   uint64_t otherwise = default_bits(own);
-  if (callee.kind == Callee::Kind::kFunction && sema_.pous[callee.pou].result.valid()) {
-    const Variable& declared = sema_.resolve(sema_.pous[callee.pou].result);
+  if (callee.kind == Callee::Kind::kFunction && sema_.declared.pous[callee.pou].result.valid()) {
+    const Variable& declared = sema_.resolve(sema_.declared.pous[callee.pou].result);
     otherwise = declared.init.valid() ? sema_.program.constants[declared.init].bits
                                       : default_bits(declared.type);
   }

@@ -32,7 +32,7 @@ Receiver Body::receiver_of(const Expr& head) {
 }
 
 bool Body::is_virtual(const PouInfo& method, const Receiver& receiver) const {
-  if (sema_.pous[method.owner].decl->kind == PouKind::kInterface) return true;
+  if (sema_.declared.pous[method.owner].decl->kind == PouKind::kInterface) return true;
   if (receiver.fixed || receiver.place) return false;
   return method.decl->is_abstract || !method.overrides.empty();
 }
@@ -58,7 +58,7 @@ void Body::emit_method_call(const PouInfo& method, const Receiver& receiver) {
 }
 
 const MemberCode& Body::property_code(ExprId id) {
-  return sema_.pous[sema_.infer(id).property].code.find(tree_[id].name.text)->second;
+  return sema_.declared.pous[sema_.infer(id).property].code.find(tree_[id].name.text)->second;
 }
 
 Body::Result Body::result_of(const PouInfo& callee) {
@@ -75,7 +75,7 @@ Body::Result Body::result_of(const PouInfo& callee) {
 }
 
 Body::Result Body::get_property(uint32_t getter, Receiver receiver) {
-  const PouInfo& accessor = sema_.pous[getter];
+  const PouInfo& accessor = sema_.declared.pous[getter];
   prepare_receiver(accessor, receiver);
   emit_method_call(accessor, receiver);
   return result_of(accessor);
@@ -103,7 +103,7 @@ std::optional<Target> Body::property_target(ExprId id) {
                 quoted_name(expr.name) + " has no SET and cannot be written");
     return std::nullopt;
   }
-  if (!sema_.objects.check_access(sema_.pous[code.setter], expr.name)) return std::nullopt;
+  if (!sema_.objects.check_access(sema_.declared.pous[code.setter], expr.name)) return std::nullopt;
   Target out;
   const ir::TypeId type = sema_.infer(id).type;
   out.getter = code.getter;
@@ -118,7 +118,7 @@ std::optional<Target> Body::property_target(ExprId id) {
 }
 
 void Body::set_property(const Target& target, std::optional<ir::ValueId> value) {
-  const PouInfo& accessor = sema_.pous[target.setter];
+  const PouInfo& accessor = sema_.declared.pous[target.setter];
   const Variable& parameter = sema_.resolve(sema_.objects.value_of(accessor));
   Receiver receiver = target.receiver;
   prepare_receiver(accessor, receiver);

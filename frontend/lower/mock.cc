@@ -20,16 +20,17 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
   const Expr& expr = tree_[target];
   const bool plain = expr.kind == ExprKind::kName;
   if (!plain || !sema_.find_variable(expr.name).valid()) {
-    const PouInfo* function = sema_.find_pou(sema_.namespaces.find(NameSort::kDeclaration, expr));
+    const PouInfo* function =
+        sema_.declared.find_pou(sema_.namespaces.find(NameSort::kDeclaration, expr));
     if (function != nullptr && function->decl->kind == PouKind::kFunction) {
       if (function->mock.present) return global_place(function->mock.*slot);
       const std::string name(expr.name.text);
       const bool mocks = slot == &MockSlots::active;
-      sema_.error(DiagnosticCode::kBadMock, expr.span,
-                  mocks ? "`" + name + "` is a function"
-                        : "no test mocks the function `" + name + "`",
-                  mocks ? "write MOCK_FUNCTION " + name + " RETURNS value;"
-                        : "calls are counted where MOCK_FUNCTION names the function");
+      sema_.error(
+          DiagnosticCode::kBadMock, expr.span,
+          mocks ? "`" + name + "` is a function" : "no test mocks the function `" + name + "`",
+          mocks ? "write MOCK_FUNCTION " + name + " RETURNS value;"
+                : "calls are counted where MOCK_FUNCTION names the function");
       return std::nullopt;
     }
     if (function != nullptr) {
@@ -41,7 +42,7 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
     }
   }
   const ir::TypeId type = sema_.infer(target).type;
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   if (block == nullptr || !block->mock.present) {
     if (type.valid()) {
       sema_.error(DiagnosticCode::kBadMock, expr.span,
@@ -68,7 +69,7 @@ void Body::mock_statement(const Stmt& stmt) {
   if (!active) return;
   if (stmt.kind == StmtKind::kMockFunction) {
     const PouInfo* function =
-        sema_.find_pou(sema_.namespaces.find(NameSort::kDeclaration, tree_[stmt.target]));
+        sema_.declared.find_pou(sema_.namespaces.find(NameSort::kDeclaration, tree_[stmt.target]));
     if (function == nullptr) return;
     if (stmt.value.valid() && !function->result.valid()) {
       sema_.error(DiagnosticCode::kBadMock, tree_[stmt.value].span,
@@ -131,7 +132,7 @@ void Body::mock_prologue() {
   for (size_t i = 0; i < info_.mock.bodies.size(); ++i) {
     const ir::BlockId next = build_.new_block();
     when(kMockedByValue + 1 + i, next);
-    forward_to_mock(sema_.pous[info_.mock.bodies[i]]);
+    forward_to_mock(sema_.declared.pous[info_.mock.bodies[i]]);
     build_.ret();
     build_.start(next);
   }

@@ -112,7 +112,7 @@ ir::Place Body::property_place(ExprId id) {
   const Result result = read_property(id);
   if (!result.value.valid()) return result.place;
   const ir::Place kept =
-      temporary_place(sema_.resolve(sema_.pous[property_code(id).getter].result).type);
+      temporary_place(sema_.resolve(sema_.declared.pous[property_code(id).getter].result).type);
   build_.store(kept, scalar(kept.type), result.value);
   return kept;
 }
@@ -120,14 +120,14 @@ ir::Place Body::property_place(ExprId id) {
 ir::Place Body::member_place(const Expr& expr) {
   ir::TypeId outer = sema_.infer(expr.operand).type;
   ir::Place place = this->place(expr.operand);
-  if (const PouInfo* block = sema_.pou_of(outer)) {
+  if (const PouInfo* block = sema_.declared.pou_of(outer)) {
     const Variable& variable = sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
     place.steps.push_back(step_to(ir::StepKind::kEnter));
     place.steps.push_back(step_to(ir::StepKind::kMember, variable.index));
     place.type = variable.type;
     return place;
   }
-  uint32_t member = static_cast<uint32_t>(sema_.find_member(outer, expr.name.text));
+  uint32_t member = static_cast<uint32_t>(sema_.declared.find_member(outer, expr.name.text));
   place.steps.push_back(step_to(ir::StepKind::kMember, member));
   place.type = types()[outer].members[member].type;
   return place;

@@ -48,7 +48,7 @@ void PoolCode::search(const Pool& pool, const PerElement& each) {
   const ir::ValueId now = build_.load(counter, kNumber);
   build_.branch(build_.compare(ir::Op::kLe, kNumber, now, constant(pool.count)), inside, done);
   build_.start(inside);
-  each(element_at(body_.variable_place(pool.elements), now, sema_.pous[pool.block].self),
+  each(element_at(body_.variable_place(pool.elements), now, sema_.declared.pous[pool.block].self),
        element_at(body_.variable_place(pool.states), now, types().elementary(ir::Kind::kByte)));
   build_.store(counter, kNumber, build_.binary(ir::Op::kAdd, kNumber, now, constant(1)));
   build_.jump(head);
@@ -73,7 +73,7 @@ ir::ValueId PoolCode::handle(const Pool& pool, const ir::Place& element) {
 void PoolCode::call_made(uint32_t method, const ir::Place& at) {
   if (method == kNoPou) return;
   body_.info_.callees.push_back(method);
-  build_.call_method(sema_.pous[method].id, at);
+  build_.call_method(sema_.declared.pous[method].id, at);
 }
 
 // Nothing can come between looking at a state and setting it: no task is suspended there.
@@ -94,8 +94,8 @@ ir::ValueId PoolCode::make(const Expr& call) {
   search(*pool, [&](const ir::Place& element, const ir::Place& state) {
     start_.when(has_state(state, kPoolFree), [&] {
       set_state(state, kPoolUsed);
-      call_made(sema_.pous[pool->block].reset, element);
-      start_.construct(element, sema_.pous[pool->block].self, args, call.span);
+      call_made(sema_.declared.pous[pool->block].reset, element);
+      start_.construct(element, sema_.declared.pous[pool->block].self, args, call.span);
       build_.store(result, kU64, handle(*pool, element));
       build_.jump(done);
     });
@@ -134,7 +134,7 @@ void PoolCode::destroy(const Expr& call) {
 
 // A second __DELETE of the same element, by its own FB_Exit or by another task, finds nothing.
 void PoolCode::free(const Pool& pool, const ir::Place& element, const ir::Place& state) {
-  const PouInfo& block = sema_.pous[pool.block];
+  const PouInfo& block = sema_.declared.pous[pool.block];
   set_state(state, kPoolLeaving);
   leave(element, block.self);
   call_made(block.reset, element);
@@ -143,7 +143,7 @@ void PoolCode::free(const Pool& pool, const ir::Place& element, const ir::Place&
 
 void PoolCode::visit_all() {
   for (const Pool& pool : sema_.pools.all()) {
-    const ir::TypeId type = sema_.pous[pool.block].self;
+    const ir::TypeId type = sema_.declared.pous[pool.block].self;
     if (!sema_.objects.constructs(type)) continue;
     search(pool, [&](const ir::Place& element, const ir::Place& state) {
       start_.when(has_state(state, kPoolUsed), [&] { start_.visit(element, type); });
@@ -177,7 +177,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
   const bool instance = types().is_instance(id);
   ir::Place inside = at;
   if (instance) {
-    call_made(sema_.pou_of(id)->reset, at);
+    call_made(sema_.declared.pou_of(id)->reset, at);
     inside = part(at, ir::StepKind::kEnter, 0, id);
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
@@ -215,7 +215,7 @@ void PoolCode::leave(const ir::Place& at, ir::TypeId id) {
                                [&](const ir::Place& one, ir::ConstId) { leave(one, type.base); });
   }
   if (types().is_instance(id)) {
-    const PouInfo& block = *sema_.pou_of(id);
+    const PouInfo& block = *sema_.declared.pou_of(id);
     start_.exit(at, block);
     return call_made(block.leave, at);
   }

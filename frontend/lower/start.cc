@@ -37,11 +37,11 @@ void StartCode::run() {
     const ir::Place flag = body_.variable_place(sema_.objects.change_flag());
     return build_.store(flag, ir::Scalar::kU32, number(0));
   }
-  const PouInfo& block = sema_.pous[info.owner];
-  const uint32_t base = block.base == kNoPou ? kNoPou : sema_.pous[block.base].start;
+  const PouInfo& block = sema_.declared.pous[info.owner];
+  const uint32_t base = block.base == kNoPou ? kNoPou : sema_.declared.pous[block.base].start;
   if (base != kNoPou) {
     info.callees.push_back(base);
-    build_.call_method(sema_.pous[base].id);
+    build_.call_method(sema_.declared.pous[base].id);
   }
   references(block.members);
   for (VarId id : block.members) variable(id);
@@ -127,7 +127,7 @@ void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
     ir::Place member = at;
     member.steps.push_back(step_to(ir::StepKind::kMember, i));
     member.type = types()[type].members[i].type;
-    const Sema::Field* field = sema_.find_field(type, types()[type].members[i].name);
+    const StructureField* field = sema_.declared.find_field(type, types()[type].members[i].name);
     const bool whole = field != nullptr && field->bit < 0;
     Sema::Within outside(sema_, kNoPou);  // what the members' arguments name
     value(member, member.type, whole ? sema_.objects.construction(field->spec) : nullptr);
@@ -201,7 +201,7 @@ void StartCode::when(ir::ValueId condition, const std::function<void()>& then) {
 
 const PouInfo* StartCode::code_of(const PouInfo& block, std::string_view name) const {
   const uint32_t method = sema_.objects.find_code(block.number, name).code.method;
-  return method == kNoPou ? nullptr : &sema_.pous[method];
+  return method == kNoPou ? nullptr : &sema_.declared.pous[method];
 }
 
 void StartCode::construct(const ir::Place& at, ir::TypeId type, Range32 args,
@@ -217,7 +217,7 @@ void StartCode::exit(const ir::Place& at, const PouInfo& block) {
 // What leaves, leaves from the outside in; the other way round, what is inside is ready first.
 void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, bool new_ones) {
   constexpr ir::Scalar kU32 = ir::Scalar::kU32;
-  const PouInfo& block = *sema_.pou_of(type);
+  const PouInfo& block = *sema_.declared.pou_of(type);
   const PouInfo* init = code_of(block, kFbInit);
   const PouInfo* reinit = code_of(block, kFbReinit);
   ir::Place stamp = at;
@@ -239,7 +239,7 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, boo
   }
   if (block.start != kNoPou) {
     body_.info_.callees.push_back(block.start);
-    build_.call_method(sema_.pous[block.start].id, at);
+    build_.call_method(sema_.declared.pous[block.start].id, at);
   }
   if (init == nullptr && args.count != 0) {
     sema_.error(DiagnosticCode::kBadConstruction, span_,
@@ -296,7 +296,7 @@ void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
 bool StartCode::bind(const Expr& call, const PouInfo& method,
                      std::vector<Body::Binding>& bindings) {
   const std::string name(method.decl->name.text);
-  const std::string of = name + " of " + quoted_name(sema_.pous[method.owner].decl->name);
+  const std::string of = name + " of " + quoted_name(sema_.declared.pous[method.owner].decl->name);
   std::vector<VarId> parameters;
   for (VarId id : method.locals) {
     const Variable& variable = sema_.resolve(id);

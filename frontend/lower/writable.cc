@@ -39,7 +39,7 @@ bool Body::has_address(ExprId id) {
       return tree_.directs[expr.number].address.area != ir::DirectArea::kInput;
     case ExprKind::kMember: {
       if (note.variable.valid()) return true;
-      const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
+      const PouInfo* block = sema_.declared.pou_of(sema_.infer(expr.operand).type);
       if (block == nullptr) return !is_input_field(expr) && has_address(expr.operand);
       const VarId variable = sema_.objects.find_parameter(*block, expr.name.text);
       return variable.valid() && !has_known_value(sema_.resolve(variable)) &&
@@ -76,7 +76,7 @@ bool Body::check_writable(ExprId id) {
       if (VarId global = sema_.infer(id).variable; global.valid()) {
         return check_writable_variable(expr, global);
       }
-      const PouInfo* block = sema_.pou_of(sema_.infer(expr.operand).type);
+      const PouInfo* block = sema_.declared.pou_of(sema_.infer(expr.operand).type);
       if (block == nullptr) return check_writable_field(expr) && check_writable(expr.operand);
       const Variable& variable =
           sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
@@ -106,7 +106,7 @@ bool Body::check_writable(ExprId id) {
 // A member of a structure that stands at %I.
 bool Body::is_input_field(const Expr& expr) {
   ir::TypeId structure = sema_.infer(expr.operand).type;
-  int32_t member = sema_.find_member(structure, expr.name.text);
+  int32_t member = sema_.declared.find_member(structure, expr.name.text);
   if (member < 0) return false;
   const ir::Member& field = types()[structure].members[static_cast<size_t>(member)];
   return field.address.area == ir::DirectArea::kInput;

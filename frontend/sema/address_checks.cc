@@ -61,7 +61,7 @@ bool keeps_value(ir::DirectArea area) {
 // Inputs may overlap: nobody writes them.
 void SharedAddresses::check() const {
   std::vector<Located> all = sema_.addresses.direct_uses;
-  for (const Variable& variable : sema_.variables_) {
+  for (const Variable& variable : sema_.declared.variables) {
     const VarDecl* decl = variable.decl;
     const bool located = decl != nullptr && decl->has_address && !decl->incomplete &&
                          decl->levels.count == 0 && variable.type.valid();
@@ -96,8 +96,8 @@ void SharedAddresses::check() const {
     if (last != nullptr && one.configured) report_configured(one, *last);
     if (last != nullptr && !one.configured) report_configured(*last, one);
     Furthest& mine = one.configured ? placed : others;
-    const uint64_t end = one.address.bit_offset + ir::located_bits(sema_.program.types, natural,
-                                                                   one.type, one.address);
+    const uint64_t end = one.address.bit_offset +
+                         ir::located_bits(sema_.program.types, natural, one.type, one.address);
     if (reaches(mine) && end <= mine.end) continue;
     mine = {&one, end};
   }
@@ -107,14 +107,14 @@ void SharedAddresses::check() const {
 void SharedAddresses::check_instances() const {
   if (sema_.diagnostics_.has_errors() || sema_.for_tests()) return;  // a TEST has one of its own
   const auto places = [&](const PouInfo& pou, VarId id) {
-    const Variable& variable = sema_.variables_[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     const VarDecl* decl = variable.decl;
     return pou.decl != nullptr && pou.decl->kind == PouKind::kFunctionBlock && decl != nullptr &&
            decl->has_address && !decl->incomplete && variable.storage == Storage::kMember &&
            keeps_value(decl->address.area);
   };
   std::vector<std::pair<const PouInfo*, VarId>> fixed;
-  for (const PouInfo& pou : sema_.pous) {
+  for (const PouInfo& pou : sema_.declared.pous) {
     for (const VarId id : pou.members) {
       if (places(pou, id)) fixed.emplace_back(&pou, id);
     }
@@ -125,13 +125,13 @@ void SharedAddresses::check_instances() const {
   counts.add(sema_.program.globals, 1);
   for (const auto& [pou, id] : fixed) {
     uint64_t instances = 0;
-    for (const PouInfo& other : sema_.pous) {
+    for (const PouInfo& other : sema_.declared.pous) {
       const bool is_one = other.self.valid() && other.owner == kNoPou &&
                           sema_.objects.extends(other.number, pou->number);
       if (is_one) instances += counts.of(other.self);
     }
     if (instances < InstanceCounts::kMany) continue;
-    const Variable& variable = sema_.variables_[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     sema_.error(DiagnosticCode::kBadAddress, variable.name.span,
                 "`" + std::string(pou->name) + "." + std::string(variable.name.text) + "` AT " +
                     ir::address_text(variable.decl->address) +

@@ -26,12 +26,14 @@ void free_inputs(ir::TypeTable& types) {
 
 // The global through which code reaches the program; invalid: there is no such program.
 VarId Sema::program_variable(std::string_view name, bool called) {
-  auto found = pou_names_.find(name);
-  if (found == pou_names_.end() || pous[found->second].decl->kind != PouKind::kProgram) return {};
-  PouInfo& info = pous[found->second];
+  auto found = declared.pou_names.find(name);
+  if (found == declared.pou_names.end() ||
+      declared.pous[found->second].decl->kind != PouKind::kProgram)
+    return {};
+  PouInfo& info = declared.pous[found->second];
   info.called = info.called || called;
   if (info.global.valid()) return info.global;
-  VarId id(static_cast<uint32_t>(variables_.size()));
+  VarId id(static_cast<uint32_t>(declared.variables.size()));
   Variable variable;
   variable.name = info.decl->name;
   variable.section = VarSection::kGlobal;
@@ -40,7 +42,7 @@ VarId Sema::program_variable(std::string_view name, bool called) {
   variable.hidden = true;
   variable.type = info.self;
   variable.progress = Progress::kDone;
-  variables_.push_back(variable);
+  declared.variables.push_back(variable);
   info.global = id;
   place_global(id);
   return id;
@@ -49,7 +51,7 @@ VarId Sema::program_variable(std::string_view name, bool called) {
 // After all bodies. What is called does not run by itself, unless a CONFIGURATION says so.
 void Sema::finish_programs() {
   if (for_tests()) return free_inputs(program.types);  // programs are blocks then
-  for (const PouInfo& info : pous) {
+  for (const PouInfo& info : declared.pous) {
     if (!info.global.valid()) continue;
     ir::ProgramInstance* instance = nullptr;
     for (ir::ProgramInstance& other : program.instances) {

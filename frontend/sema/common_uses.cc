@@ -53,25 +53,25 @@ void compare(const ResourceUses& first, const ResourceUses& second,
 }  // namespace
 
 bool CommonUses::is_outer(VarId global) const {
-  const Variable& variable = sema_.variables_[global.index];
-  return variable.storage == Storage::kGlobal && variable.index < sema_.outer_globals_ &&
+  const Variable& variable = sema_.declared.variables[global.index];
+  return variable.storage == Storage::kGlobal && variable.index < sema_.declared.outer_globals &&
          variable.section == VarSection::kGlobal && !variable.hidden && !variable.constant &&
-         !sema_.in_library(variable.name.span);
+         !sema_.library.holds(variable.name.span);
 }
 
 std::vector<uint32_t> CommonUses::reached_from(const std::vector<ir::TypeId>& starts) const {
-  std::vector<bool> seen(sema_.pous.size());
+  std::vector<bool> seen(sema_.declared.pous.size());
   std::vector<uint32_t> found;
   const auto add = [&](uint32_t pou) {
     if (!seen[pou]) found.push_back(pou);
     seen[pou] = true;
   };
   for (ir::TypeId type : starts) {
-    const auto start = sema_.pou_by_type_.find(type);
-    if (start != sema_.pou_by_type_.end()) add(start->second);
+    const auto start = sema_.declared.pou_by_type.find(type);
+    if (start != sema_.declared.pou_by_type.end()) add(start->second);
   }
   for (size_t i = 0; i < found.size(); ++i) {
-    for (uint32_t callee : sema_.pous[found[i]].callees) add(callee);
+    for (uint32_t callee : sema_.declared.pous[found[i]].callees) add(callee);
   }
   return found;
 }
@@ -79,7 +79,7 @@ std::vector<uint32_t> CommonUses::reached_from(const std::vector<ir::TypeId>& st
 // Code runs when somebody calls it, or an instance of its type exists.
 std::vector<bool> CommonUses::other_code() const {
   const ir::Program& program = sema_.program;
-  std::vector<bool> seen(sema_.pous.size());
+  std::vector<bool> seen(sema_.declared.pous.size());
   std::vector<bool> seen_types(program.types.size());
   std::vector<uint32_t> found;
   std::vector<ir::TypeId> types{program.globals};
@@ -88,7 +88,7 @@ std::vector<bool> CommonUses::other_code() const {
     seen[pou] = true;
   };
   for (const ir::ProgramInstance& instance : program.instances) types.push_back(instance.type);
-  for (const PouInfo& info : sema_.pous) {
+  for (const PouInfo& info : sema_.declared.pous) {
     for (const ir::Migration& row : program.migrations) {
       if (info.id == row.function) add(info.number);
     }
@@ -99,18 +99,18 @@ std::vector<bool> CommonUses::other_code() const {
       types.pop_back();
       if (!type.valid() || seen_types[type.index]) continue;
       seen_types[type.index] = true;
-      const auto pou = sema_.pou_by_type_.find(type);
-      if (pou != sema_.pou_by_type_.end()) add(pou->second);
+      const auto pou = sema_.declared.pou_by_type.find(type);
+      if (pou != sema_.declared.pou_by_type.end()) add(pou->second);
       if (program.types[type].kind == ir::Kind::kArray) types.push_back(program.types[type].base);
       for (const ir::Member& member : program.types[type].members) types.push_back(member.type);
     }
     if (next == found.size()) break;
-    for (uint32_t callee : sema_.pous[found[next]].callees) add(callee);
+    for (uint32_t callee : sema_.declared.pous[found[next]].callees) add(callee);
     ++next;
   }
   std::vector<bool> others(program.pous.size(), true);
   for (uint32_t pou : found) {
-    const ir::PouId id = sema_.pous[pou].id;
+    const ir::PouId id = sema_.declared.pous[pou].id;
     if (id.valid()) others[id.index] = false;
   }
   return others;
@@ -123,7 +123,7 @@ ResourceUses CommonUses::of_resource() {
   out.resource = sema_.resource_->name.text;
   const ir::Layouts natural = ir::natural_layouts(program.types);
   const auto add = [&](VarId id) -> CommonGlobal& {
-    const Variable& variable = sema_.variables_[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     const auto [entry, added] = out.globals.try_emplace(variable.index);
     if (!added) return entry->second;
     const bool plain = !variable.decl->has_address &&
@@ -133,8 +133,8 @@ ResourceUses CommonUses::of_resource() {
     return entry->second;
   };
   for (const ir::Task& task : program.tasks) {
-    if (task.event >= sema_.outer_globals_) continue;
-    const VarId event = sema_.global_order_[task.event];
+    if (task.event >= sema_.declared.outer_globals) continue;
+    const VarId event = sema_.declared.global_order[task.event];
     if (is_outer(event)) add(event);
   }
   std::vector<ir::TypeId> starts;
@@ -144,16 +144,16 @@ ResourceUses CommonUses::of_resource() {
     starts.push_back(program.types[holder].members[block.member].type);
   }
   for (uint32_t pou : reached_from(starts)) {
-    for (VarId id : sema_.pous[pou].variables) {
-      const VarId external = sema_.variables_[id.index].external;
+    for (VarId id : sema_.declared.pous[pou].variables) {
+      const VarId external = sema_.declared.variables[id.index].external;
       if (external.valid() && is_outer(external)) add(external);
     }
-    for (const OuterUse& use : sema_.pous[pou].outer_uses) {
+    for (const OuterUse& use : sema_.declared.pous[pou].outer_uses) {
       CommonGlobal& global = add(use.global);
       if (use.written && !global.written) global.at = use.span;
       global.written = global.written || use.written;
     }
-    add_outputs(sema_.pous[pou].writes, natural, out);
+    add_outputs(sema_.declared.pous[pou].writes, natural, out);
   }
   out.other_code = other_code();
   std::erase_if(program.overrides, [&](const ir::Override& row) {

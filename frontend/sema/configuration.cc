@@ -12,7 +12,6 @@
 namespace frontend {
 namespace {
 
-
 ir::Task main_task() {
   ir::Task task;
   task.name = "Main";
@@ -105,7 +104,7 @@ void Sema::configure() {
 
 void Sema::default_configuration() {
   program.tasks.push_back(main_task());
-  for (const PouInfo& pou : pous) {
+  for (const PouInfo& pou : declared.pous) {
     if (pou.decl->kind != PouKind::kProgram) continue;
     program.instances.push_back({std::string(pou.decl->name.text),
                                  pou.self,
@@ -139,12 +138,13 @@ std::optional<uint32_t> Sema::find_task(const Name& name) {
 }
 
 std::optional<uint32_t> Sema::find_program(const ProgramDecl& decl) {
-  auto found = pou_names_.find(decl.type.text);
-  if (found != pou_names_.end() && pous[found->second].decl->kind == PouKind::kProgram) {
+  auto found = declared.pou_names.find(decl.type.text);
+  if (found != declared.pou_names.end() &&
+      declared.pous[found->second].decl->kind == PouKind::kProgram) {
     return found->second;
   }
   NearestName nearest(decl.type.text);
-  for (const PouInfo& pou : pous) {
+  for (const PouInfo& pou : declared.pous) {
     if (pou.decl->kind == PouKind::kProgram) nearest.offer(pou.decl->name.text);
   }
   error(DiagnosticCode::kUnknownProgram, decl.type.span, quoted(decl.type) + " is not a PROGRAM",
@@ -175,14 +175,14 @@ void Sema::add_instance(const ProgramDecl& decl, const ResourceDecl& resource) {
   };
   bool alone = std::count_if(resource.programs.begin(), resource.programs.end(), same_type) == 1;
   std::vector<Connection> connections;
-  instance.init = program_arguments(decl, pous[*pou], connections);
+  instance.init = program_arguments(decl, declared.pous[*pou], connections);
   bool own = !connections.empty() || decl.retain;
   if (own && !alone) *pou = clone_program(*pou, decl);
-  pous[*pou].connections = std::move(connections);
-  if (decl.retain) retain_program(pous[*pou]);
-  instance.type = pous[*pou].self;
+  declared.pous[*pou].connections = std::move(connections);
+  if (decl.retain) retain_program(declared.pous[*pou]);
+  instance.type = declared.pous[*pou].self;
   program.instances.push_back(std::move(instance));
-  for (const BlockTask& block : decl.block_tasks) add_block_task(block, pous[*pou]);
+  for (const BlockTask& block : decl.block_tasks) add_block_task(block, declared.pous[*pou]);
 }
 
 // PROGRAM p : T (fb WITH task): the block runs in a task of its own.
@@ -244,14 +244,14 @@ ir::ConstId Sema::program_arguments(const ProgramDecl& decl, const PouInfo& info
 void Sema::retain_program(const PouInfo& info) {
   std::vector<ir::Member>& members = program.types.edit(info.self).members;
   for (VarId id : info.members) {
-    Variable& variable = variables_[id.index];
+    Variable& variable = declared.variables[id.index];
     bool lasts = variable.section != VarSection::kInOut && variable.section != VarSection::kTemp;
     variable.retain = lasts && !variable.non_retain;
     members[variable.index].retain = variable.retain;
   }
   std::vector<ir::Member>& globals = program.types.edit(program.globals).members;
   for (const auto& [name, id] : info.names) {  // those that share their place
-    const Variable& variable = variables_[id.index];
+    const Variable& variable = declared.variables[id.index];
     const bool shared =
         variable.storage == Storage::kGlobal && variable.section == VarSection::kLocal;
     if (shared && !variable.non_retain) globals[variable.index].retain = true;
@@ -263,11 +263,11 @@ void Sema::retain_program(const PouInfo& info) {
 uint32_t Sema::clone_program(uint32_t original, const ProgramDecl& decl) {
   const Name& instance = decl.name;
   const std::string old_instance = renamed_from(tree, decl.attributes);
-  auto number = static_cast<uint32_t>(pous.size());
-  PouInfo& info = pous.emplace_back();
+  auto number = static_cast<uint32_t>(declared.pous.size());
+  PouInfo& info = declared.pous.emplace_back();
   info.number = number;
-  info.decl = pous[original].decl;
-  info.name = pous[original].name;
+  info.decl = declared.pous[original].decl;
+  info.name = declared.pous[original].name;
   info.meaning = std::make_unique<Meaning>();
   info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
   ir::Pou code;
@@ -276,15 +276,15 @@ uint32_t Sema::clone_program(uint32_t original, const ProgramDecl& decl) {
   ir::Type type;
   type.kind = ir::Kind::kProgram;
   type.name = code.name;
-  const std::string_view before = pous[original].old_name;
+  const std::string_view before = declared.pous[original].old_name;
   if (!before.empty() || !old_instance.empty()) {
     type.old_name = OldNames(*this).of_clone(info.name, before, instance.text, old_instance);
   }
   info.self = code.self = program.types.declare(std::move(type));
-  pou_by_type_.emplace(info.self, number);
+  declared.pou_by_type.emplace(info.self, number);
   program.pous.push_back(std::move(code));
   collect_interface(number);
-  for (uint32_t i = number; i < pous.size(); ++i) resolve_interface(i);  // its methods too
+  for (uint32_t i = number; i < declared.pous.size(); ++i) resolve_interface(i);  // its methods too
   return number;
 }
 

@@ -27,7 +27,7 @@ class Containment {
         depths_(types_.size()) {}
 
   void check() {
-    for (const PouInfo& pou : sema_.pous) {
+    for (const PouInfo& pou : sema_.declared.pous) {
       if (pou.self.valid()) walk(pou.self);
     }
     for (uint32_t i = 0; i < types_.size(); ++i) {
@@ -114,7 +114,7 @@ class Containment {
   // The first that is too deep: the others are of the same chain, or wait for the next time.
   void report(DiagnosticCode code, ir::TypeId type, const std::string& what, const char* help) {
     if (code == DiagnosticCode::kTooDeep && std::exchange(told_depth_, true)) return;
-    const PouInfo* owner = sema_.pou_of(type);
+    const PouInfo* owner = sema_.declared.pou_of(type);
     base::SourceSpan span = owner != nullptr ? owner->decl->name.span : base::SourceSpan{};
     for (const TypeDecl& decl : sema_.tree.types) {
       if (ir::same_name(decl.name.text, types_[type].name)) span = decl.name.span;

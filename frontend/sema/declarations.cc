@@ -49,7 +49,7 @@ void Sema::collect() {
             "a CONFIGURATION stands in a namespace", "put it outside");
     }
     collect_globals(config.globals, config.name.text);
-    if (config.resources.size() > 1) outer_globals_ = global_order_.size();
+    if (config.resources.size() > 1) declared.outer_globals = declared.global_order.size();
     for (const ResourceDecl& resource : config.resources) {
       if (&resource == resource_) collect_globals(resource.globals, resource.name.text);
     }
@@ -61,13 +61,13 @@ void Sema::collect() {
 void Sema::collect_types() {
   for (const TypeDecl& decl : tree.types) {
     if (decl.name.empty() || !decl.spec.valid()) continue;
-    if (in_library(decl.name.span)) {
+    if (library.holds(decl.name.span)) {
       collect_library_type(decl);
       continue;
     }
     const std::string_view name =
         namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
-    if (!types_.emplace(name, decl.spec).second || pou_names_.contains(name)) {
+    if (!declared.types.emplace(name, decl.spec).second || declared.pou_names.contains(name)) {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
             "`" + std::string(name) + "` is declared twice");
       continue;
@@ -79,39 +79,39 @@ void Sema::collect_types() {
 }
 
 void Sema::declare_type(const TypeDecl& decl, std::string_view name) {
-  specs_[decl.spec.index].name = {name, decl.name.span};
-  specs_[decl.spec.index].default_value = decl.init;
+  facts.specs[decl.spec.index].name = {name, decl.name.span};
+  facts.specs[decl.spec.index].default_value = decl.init;
   forward_declare(decl, name);
 }
 
 void Sema::collect_library_type(const TypeDecl& decl) {
-  library_types_.emplace(decl.name.text, &decl);
+  library.types.emplace(decl.name.text, &decl);
   for (const Enumerator& enumerator : tree[decl.spec].enumerators) {
-    library_literals_.emplace(enumerator.name.text, &decl);
+    library.literals.emplace(enumerator.name.text, &decl);
   }
 }
 
 // Library types enter the program when their name, or a literal that nobody else has, is first
 // used.
 bool Sema::use_library_type(std::string_view name) {
-  auto found = library_types_.find(name);
-  if (found == library_types_.end() || types_.contains(name)) return false;
+  auto found = library.types.find(name);
+  if (found == library.types.end() || declared.types.contains(name)) return false;
   const TypeDecl& decl = *found->second;
-  types_.emplace(decl.name.text, decl.spec);
+  declared.types.emplace(decl.name.text, decl.spec);
   declare_type(decl, decl.name.text);
   return true;
 }
 
 bool Sema::use_library_literal(std::string_view name) {
-  auto found = library_literals_.find(name);
-  if (found == library_literals_.end()) return false;
+  auto found = library.literals.find(name);
+  if (found == library.literals.end()) return false;
   const TypeDecl& decl = *found->second;
   use_library_type(decl.name.text);
-  if (types_.find(decl.name.text)->second != decl.spec) return false;
+  if (declared.types.find(decl.name.text)->second != decl.spec) return false;
   const auto& enumerators = tree[decl.spec].enumerators;
   for (uint32_t i = 0; i < enumerators.size(); ++i) {
     if (ir::same_name(enumerators[i].name.text, name)) {
-      literals_[enumerators[i].name.text].push_back({decl.spec, i});
+      declared.literals[enumerators[i].name.text].push_back({decl.spec, i});
     }
   }
   return true;
@@ -124,7 +124,7 @@ void Sema::forward_declare(const TypeDecl& decl, std::string_view name) {
   ir::Type type;
   type.kind = kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
   type.name = name;
-  specs_[decl.spec.index].forward = program.types.declare(std::move(type));
+  facts.specs[decl.spec.index].forward = program.types.declare(std::move(type));
 }
 
 void Sema::collect_enumerators(SpecId spec, ScopeId scope, Access access) {
@@ -132,16 +132,17 @@ void Sema::collect_enumerators(SpecId spec, ScopeId scope, Access access) {
   const Spec& content = tree[spec];
   for (uint32_t i = 0; i < content.enumerators.size(); ++i) {
     const Name& name = content.enumerators[i].name;
-    literals_[namespaces.declare(NameSort::kLiteral, scope, name, access)].push_back({spec, i});
+    declared.literals[namespaces.declare(NameSort::kLiteral, scope, name, access)].push_back(
+        {spec, i});
   }
 }
 
 // `name`: by which the scope knows it, when that is not its own.
 VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name) {
-  VarId id(static_cast<uint32_t>(variables_.size()));
+  VarId id(static_cast<uint32_t>(declared.variables.size()));
   if (name.empty()) name = variable.name.text;
   if (!scope.emplace(name, id).second) {
-    const Variable& first = variables_[scope[name].index];
+    const Variable& first = declared.variables[scope[name].index];
     std::string where = first.decl == nullptr
                             ? "the function's result has the function's name"
                             : "first declared in line " +
@@ -150,15 +151,15 @@ VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope, std::string_v
           "`" + std::string(name) + "` is declared twice; " + where);
     return {};
   }
-  variables_.push_back(variable);
+  declared.variables.push_back(variable);
   return id;
 }
 
 void Sema::collect_pous() {
   for (const PouDecl& decl : tree.pous) {
     if (decl.name.empty()) continue;
-    if (in_library(decl.span)) {
-      library_.emplace(decl.name.text, &decl);
+    if (library.holds(decl.span)) {
+      library.pous.emplace(decl.name.text, &decl);
       continue;
     }
     if (decl.kind == PouKind::kProgram && tree.in_namespace(decl.scope)) {
@@ -168,14 +169,14 @@ void Sema::collect_pous() {
     }
     const std::string_view name =
         namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
-    const auto same = pou_names_.find(name);
-    if (same == pou_names_.end()) {
+    const auto same = declared.pou_names.find(name);
+    if (same == declared.pou_names.end()) {
       add_pou(decl, false, name);
     } else if (decl.kind == PouKind::kFunction &&
-               pous[same->second].decl->kind == PouKind::kFunction) {
+               declared.pous[same->second].decl->kind == PouKind::kFunction) {
       uint32_t last = same->second;
-      while (pous[last].overload != kNoPou) last = pous[last].overload;
-      pous[last].overload = static_cast<uint32_t>(pous.size());
+      while (declared.pous[last].overload != kNoPou) last = declared.pous[last].overload;
+      declared.pous[last].overload = static_cast<uint32_t>(declared.pous.size());
       add_pou(decl, false, name);
     } else {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
@@ -184,20 +185,19 @@ void Sema::collect_pous() {
   }
 }
 
-uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name) {
-  uint32_t number = static_cast<uint32_t>(pous.size());
-  PouInfo& info = pous.emplace_back();
+uint32_t Sema::add_pou(const PouDecl& decl, bool of_library, std::string_view name) {
+  uint32_t number = static_cast<uint32_t>(declared.pous.size());
+  PouInfo& info = declared.pous.emplace_back();
   info.number = number;
   info.decl = &decl;
   info.name = name;
-  info.library = library;
+  info.library = of_library;
   info.open = is_open(decl);
-  info.as_block =
-      for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
+  info.as_block = for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
   if (const std::string rule = renamed_from(tree, decl.attributes); !rule.empty()) {
-    info.old_name = keep_name(whole_old_names(name, rule));
+    info.old_name = declared.keep_name(whole_old_names(name, rule));
   }
-  pou_names_.emplace(name, number);
+  declared.pou_names.emplace(name, number);
   if (!has_frame(decl.kind)) {
     ir::Type type;
     type.kind = instance_kind(decl.kind);
@@ -205,11 +205,11 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool library, std::string_view name)
     type.old_name = OldNames(*this).add(std::string(info.old_name));
     if (info.as_block) type.kind = ir::Kind::kFunctionBlock;
     info.self = program.types.declare(std::move(type));
-    pou_by_type_.emplace(info.self, number);
+    declared.pou_by_type.emplace(info.self, number);
   }
   if (!info.open && decl.kind != PouKind::kInterface) add_code(info, std::string(name));
   collect_interface(number);
-  if (library) add_aliases(info);
+  if (of_library) add_aliases(info);
   return number;
 }
 
@@ -223,7 +223,7 @@ void Sema::add_code(PouInfo& info, std::string name) {
 }
 
 void Sema::collect_interface(uint32_t number) {
-  PouInfo& info = pous[number];
+  PouInfo& info = declared.pous[number];
   const PouDecl& decl = *info.decl;
   for (const VarBlock& block : decl.blocks) collect_variables(number, block);
   if (has_frame(decl.kind) && decl.result.valid()) {
@@ -243,18 +243,18 @@ void Sema::collect_interface(uint32_t number) {
 // For a program instance with code of its own: the variable of all instances that shares its place.
 VarId Sema::shared_by_original(const PouInfo& info, const Variable& variable) const {
   if (info.meaning == nullptr || !variable.decl->has_address) return {};
-  for (const PouInfo& original : pous) {
+  for (const PouInfo& original : declared.pous) {
     if (original.decl != info.decl || original.meaning != nullptr) continue;
     const auto found = original.names.find(variable.name.text);
     const bool shared = found != original.names.end() &&
-                        variables_[found->second.index].storage == Storage::kGlobal;
+                        declared.variables[found->second.index].storage == Storage::kGlobal;
     return shared ? VarId(found->second) : VarId();
   }
   return {};
 }
 
 void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
-  PouInfo& info = pous[pou];
+  PouInfo& info = declared.pous[pou];
   if (block.section == VarSection::kAccess) return;
   if (block.section == VarSection::kStatic) allow_extension("VAR_STAT", block.span);
   for (const VarDecl& decl : block.vars) {
@@ -303,22 +303,22 @@ void Sema::number_variables(PouInfo& info) {
   info.locals.clear();
   info.members.clear();
   auto place = [&](VarId id, Storage storage, std::vector<VarId>& order) {
-    variables_[id.index].storage = storage;
-    variables_[id.index].index = static_cast<uint32_t>(order.size());
+    declared.variables[id.index].storage = storage;
+    declared.variables[id.index].index = static_cast<uint32_t>(order.size());
     order.push_back(id);
   };
   if (function) {
     for (VarId id : info.variables) {
-      if (id != info.result && is_parameter(variables_[id.index].section)) {
+      if (id != info.result && is_parameter(declared.variables[id.index].section)) {
         place(id, Storage::kLocal, info.locals);
       }
     }
     if (info.result.valid()) place(info.result, Storage::kLocal, info.locals);
   }
   for (VarId id : info.variables) {
-    VarSection section = variables_[id.index].section;
+    VarSection section = declared.variables[id.index].section;
     if (section == VarSection::kExternal || id == info.result) continue;
-    if (variables_[id.index].storage == Storage::kGlobal) continue;  // it shares bytes
+    if (declared.variables[id.index].storage == Storage::kGlobal) continue;  // it shares bytes
     if (function && is_parameter(section)) continue;
     bool local = function || (section == VarSection::kTemp && !info.shares_temporaries);
     place(id, local ? Storage::kLocal : Storage::kMember, local ? info.locals : info.members);
@@ -341,22 +341,22 @@ void Sema::add_aliases(PouInfo& info) {
 
 // Library POUs enter the program when their name is first used.
 bool Sema::use_library(std::string_view name) {
-  auto found = library_.find(name);
-  if (found == library_.end() || pou_names_.contains(name)) return false;
+  auto found = library.pous.find(name);
+  if (found == library.pous.end() || declared.pou_names.contains(name)) return false;
   uint32_t number = add_pou(*found->second, true, found->first);
-  if (declared_) resolve_interface(number);  // a function first met in a body
+  if (declared.complete) resolve_interface(number);  // a function first met in a body
   return true;
 }
 
 // Covers functions and methods; a prototype has no body that could assign.
 static void report_unassigned_results(Sema& sema) {
-  for (const PouInfo& pou : sema.pous) {
+  for (const PouInfo& pou : sema.declared.pous) {
     if (pou.library || pou.open || pou.made != MadeCode::kNone || !pou.result.valid()) continue;
     const PouKind kind = pou.decl->kind;
     if (kind != PouKind::kFunction && kind != PouKind::kMethod) continue;
     const bool prototype =
         pou.owner != kNoPou &&
-        (pou.decl->is_abstract || sema.pous[pou.owner].decl->kind == PouKind::kInterface);
+        (pou.decl->is_abstract || sema.declared.pous[pou.owner].decl->kind == PouKind::kInterface);
     if (prototype || sema.resolve(pou.result).written) continue;
     sema.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
                  "`" + std::string(pou.decl->name.text) + "` never assigns its result",
@@ -375,14 +375,14 @@ void Sema::report_unused() {
   };
   if (diagnostics_.has_hard_errors()) return;
   report_unassigned_results(*this);
-  for (const Variable& variable : variables_) {
+  for (const Variable& variable : declared.variables) {
     bool private_section = variable.section == VarSection::kLocal ||
                            variable.section == VarSection::kTemp ||
                            variable.section == VarSection::kStatic;
     if (variable.access == Access::kPublic) continue;  // as an output
     if (!private_section || variable.decl == nullptr) continue;
     if (variable.decl->has_address || variable.decl->implied) continue;
-    if (variable.pou != kNoPou && pous[variable.pou].open) continue;
+    if (variable.pou != kNoPou && declared.pous[variable.pou].open) continue;
     if (variable.used) {
       if (never_written(variable)) {
         warning(DiagnosticCode::kNeverWritten, variable.name.span,

@@ -178,9 +178,9 @@ std::optional<Constant> Folder::enumerator(ir::TypeId type, const Expr& name) {
     return of_bits(root, static_cast<uint64_t>(literal.value));
   }
   // Ambiguous name in the context of a third enumeration: any candidate will be refused.
-  auto found = sema_.literals_.find(sema_.namespaces.find(NameSort::kLiteral, name));
-  if (found == sema_.literals_.end()) return std::nullopt;  // NULL, for example
-  const ir::TypeId any = sema_.resolve(found->second[0].spec).type;
+  auto found = sema_.declared.literals.find(sema_.namespaces.find(NameSort::kLiteral, name));
+  if (found == sema_.declared.literals.end()) return std::nullopt;  // NULL, for example
+  const ir::TypeId any = sema_.resolve_type(found->second[0].spec).type;
   if (!sema_.program.types.is_scalar(any)) return std::nullopt;
   return of_bits(any, 0);
 }

@@ -25,7 +25,7 @@ void Sema::collect_globals(const VarBlock& block, std::string_view list) {
   if (closed) allow_extension("VAR_GLOBAL in a namespace", block.span);
   const std::string_view list_name =
       namespaces.declare(NameSort::kList, block.scope, {list, block.span}, block.access);
-  GlobalList& names = lists_[list_name];
+  GlobalList& names = declared.lists[list_name];
   for (const VarDecl& decl : block.vars) {
     collect_enumerators(decl.spec, block.scope);
     for (const Name& name : decl.names) {
@@ -36,19 +36,19 @@ void Sema::collect_globals(const VarBlock& block, std::string_view list) {
       variable.constant = block.constant;
       variable.retain = block.retain;
       variable.storage = Storage::kGlobal;
-      variable.index = static_cast<uint32_t>(global_order_.size());
+      variable.index = static_cast<uint32_t>(declared.global_order.size());
       std::string_view whole;
       if (qualified) {
         variable.list = list_name;
-        whole = keep_name(std::string(list_name) + "." + std::string(name.text));
+        whole = declared.keep_name(std::string(list_name) + "." + std::string(name.text));
       } else {
         whole = namespaces.declare(NameSort::kVariable, block.scope, name, block.access);
         if (closed) variable.list = whole.substr(0, whole.rfind('.'));
       }
-      VarId id = add_variable(variable, globals_, whole);
+      VarId id = add_variable(variable, declared.globals, whole);
       if (!id.valid()) continue;
       names.names.emplace(name.text, id);
-      global_order_.push_back(id);
+      declared.global_order.push_back(id);
     }
   }
 }
@@ -62,7 +62,7 @@ std::optional<Note> Sema::infer_list_member(const Expr& expr) {
   const GlobalList* list = namespaces.list(head);
   if (list == nullptr) return std::nullopt;
   const std::string_view other = namespaces.find(NameSort::kDeclaration, head);
-  if (types_.contains(other) || pou_names_.contains(other)) return std::nullopt;
+  if (declared.types.contains(other) || declared.pou_names.contains(other)) return std::nullopt;
   NearestName nearest(expr.name.text);
   nearest.offer_all(list->names);
   error(DiagnosticCode::kUnknownName, expr.name.span,

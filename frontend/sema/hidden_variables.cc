@@ -6,11 +6,6 @@
 
 namespace frontend {
 
-std::string_view Sema::keep_name(std::string name) {
-  made_names_.push_back(std::move(name));
-  return made_names_.back();
-}
-
 // One for all instances and calls: a global that is named `Pou.variable`.
 // Also for all that is made of one declaration: open functions, programs with connections; unless
 // the type is open too.
@@ -19,7 +14,7 @@ VarId Sema::add_static(Variable variable, PouInfo& info) {
   const bool generic = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
   if (info.open && generic) return add_variable(variable, info.names);
   if (info.meaning != nullptr && !generic) {
-    for (const PouInfo& original : pous) {
+    for (const PouInfo& original : declared.pous) {
       if (original.decl != info.decl || original.meaning != nullptr) continue;
       const VarId shared = original.names.at(variable.name.text);
       info.names.emplace(variable.name.text, shared);
@@ -27,7 +22,7 @@ VarId Sema::add_static(Variable variable, PouInfo& info) {
     }
   }
   variable.storage = Storage::kGlobal;
-  if (info.static_list.empty()) info.static_list = keep_name(static_list_name(info));
+  if (info.static_list.empty()) info.static_list = declared.keep_name(static_list_name(info));
   variable.list = info.static_list;
   VarId id = add_variable(variable, info.names);
   if (id.valid()) place_global(id);
@@ -61,8 +56,8 @@ std::string Sema::static_list_name(const PouInfo& info) const {
     return block + "#" + std::string(info.decl->name.text) + (setter ? "#Set" : "");
   }
   std::string name = info.open ? std::string(info.name) : program.pous[info.id.index].name;
-  const auto first = pou_names_.find(info.name);
-  if (first != pou_names_.end() && first->second != info.number)
+  const auto first = declared.pou_names.find(info.name);
+  if (first != declared.pou_names.end() && first->second != info.number)
     name += parameters_text(*this, *info.decl);
   for (char& c : std::span(name).subspan(info.name.size())) {
     if (c == '.' || c == '[' || c == ']') c = '_';
@@ -72,26 +67,27 @@ std::string Sema::static_list_name(const PouInfo& info) const {
 
 // A variable of a method that is kept in the instance: a member that is named `Method#variable`.
 void Sema::add_instance_variable(Variable variable, PouInfo& method) {
-  if (method.owner == kNoPou || pous[method.owner].decl->kind == PouKind::kInterface) {
+  if (method.owner == kNoPou || declared.pous[method.owner].decl->kind == PouKind::kInterface) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
           "VAR_INST stands in methods of function blocks, classes and programs");
     return;
   }
   VarId id = add_variable(variable, method.names);
   if (!id.valid()) return;
-  variables_[id.index].method = method.decl->name.text;
-  pous[method.owner].variables.push_back(id);
+  declared.variables[id.index].method = method.decl->name.text;
+  declared.pous[method.owner].variables.push_back(id);
 }
 
 // After the globals that are there.
 void Sema::place_global(VarId id) {
-  if (!declared_) {
-    variables_[id.index].index = static_cast<uint32_t>(global_order_.size());
-    global_order_.push_back(id);
+  if (!declared.complete) {
+    declared.variables[id.index].index = static_cast<uint32_t>(declared.global_order.size());
+    declared.global_order.push_back(id);
     return;
   }
   // The globals are laid out already: bare addresses may stand after them.
-  variables_[id.index].index = static_cast<uint32_t>(program.types[program.globals].members.size());
+  declared.variables[id.index].index =
+      static_cast<uint32_t>(program.types[program.globals].members.size());
   const Variable& resolved = resolve(id);
   ir::Member member = member_of(resolved, ir::Section::kGlobal);
   program.types.edit(program.globals).members.push_back(std::move(member));
@@ -99,11 +95,11 @@ void Sema::place_global(VarId id) {
 
 // `x#last` remembers, `x#edge` is what the body sees; no source can write these names.
 void Sema::add_edge(VarId input, PouInfo& info) {
-  const Variable original = variables_[input.index];
+  const Variable original = declared.variables[input.index];
   auto add = [&](const char* suffix, VarSection section) {
     Variable hidden;
     hidden.name = original.name;
-    hidden.name.text = keep_name(std::string(original.name.text) + suffix);
+    hidden.name.text = declared.keep_name(std::string(original.name.text) + suffix);
     hidden.decl = original.decl;
     hidden.section = section;
     hidden.pou = original.pou;
@@ -115,8 +111,8 @@ void Sema::add_edge(VarId input, PouInfo& info) {
   };
   VarId last = add("#last", VarSection::kLocal);
   VarId edge = add("#edge", VarSection::kTemp);
-  variables_[input.index].last = last;
-  variables_[input.index].edge = edge;
+  declared.variables[input.index].last = last;
+  declared.variables[input.index].edge = edge;
 }
 
 void Sema::check_edge(const Variable& variable) {

@@ -34,14 +34,6 @@ ir::Kind integer_kind(const Literal& literal) {
 
 }  // namespace
 
-SpecInfo& Sema::spec_info(SpecId id) {
-  if (current_pou_ == kNoPou) return specs_[id.index];
-  const PouInfo& pou = pous[current_pou_];
-  base::SourcePos at = tree[id].span.begin;
-  bool own = pou.meaning != nullptr && !(at < pou.decl->span.begin) && at < pou.decl->span.end;
-  return own ? pou.meaning->specs[id.index] : specs_[id.index];
-}
-
 const Note& Sema::infer_now(ExprId id, Note& note) {
   const Expr& expr = tree[id];
   if (depth_ > kMaxDepth) {
@@ -176,7 +168,7 @@ Note Sema::infer_name(const Expr& expr) {
   VarId id = find_variable(expr);
   if (!id.valid() && expr.global) {
     NearestName nearest(expr.name.text);
-    nearest.offer_all(globals_);
+    nearest.offer_all(declared.globals);
     error(DiagnosticCode::kUnknownName, expr.span,
           "there is no global variable `" + std::string(expr.name.text) + "`", nearest.fix());
     return {};
@@ -189,7 +181,7 @@ Note Sema::infer_name(const Expr& expr) {
     return note;
   }
   if (!id.valid()) return infer_enum_name(expr);
-  const Variable& variable = variables_[id.index];
+  const Variable& variable = declared.variables[id.index];
   if (variable.access == Access::kPrivate) {  // of a base
     objects.check_access(variable.access, variable.pou, expr.name);
   }
@@ -220,7 +212,7 @@ Note Sema::variable_note(VarId id) {
 // `name`, or `A.name` where A is a namespace.
 Note Sema::infer_enum_name(const Expr& expr) {
   const bool plain = expr.kind == ExprKind::kName;
-  const uint32_t own = plain ? objects.block_of(current_pou_) : kNoPou;
+  const uint32_t own = plain ? objects.block_of(scope_.number()) : kNoPou;
   Objects::Found code;
   if (own != kNoPou) code = objects.find_code(own, expr.name.text);
   if (code.code.is_property()) return objects.infer_property(expr.name, code);
@@ -231,9 +223,10 @@ Note Sema::infer_enum_name(const Expr& expr) {
     return {};
   }
   std::string_view name = namespaces.find(NameSort::kLiteral, expr);
-  auto found = literals_.find(name);
-  if (found == literals_.end() && plain && use_library_literal(name)) found = literals_.find(name);
-  if (found == literals_.end()) {
+  auto found = declared.literals.find(name);
+  if (found == declared.literals.end() && plain && use_library_literal(name))
+    found = declared.literals.find(name);
+  if (found == declared.literals.end()) {
     VarId id = plain ? program_variable(name, false) : VarId();
     if (id.valid()) return variable_note(id);
     name = namespaces.find(NameSort::kDeclaration, expr);
@@ -241,8 +234,8 @@ Note Sema::infer_enum_name(const Expr& expr) {
       error(DiagnosticCode::kNotAValue, expr.span, "`" + std::string(name) + "` is a namespace");
       return {};
     }
-    bool pou = pou_names_.contains(name) || types_.contains(name) || library_.contains(name) ||
-               standard_.contains(name);
+    bool pou = declared.pou_names.contains(name) || declared.types.contains(name) ||
+               library.pous.contains(name) || library.functions.contains(name);
     error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
           "`" + std::string(name) + (pou ? "` is not a variable" : "` is not declared"),
           pou ? Fix() : name_suggestion(name, false));
@@ -252,7 +245,7 @@ Note Sema::infer_enum_name(const Expr& expr) {
   note.constant = true;
   const bool several = found->second.size() > 1 || namespaces.is_ambiguous(expr.name);
   if (several) note.flex = Flex::kEnum;
-  note.type = resolve(found->second[0].spec).type;
+  note.type = resolve_type(found->second[0].spec).type;
   return note;
 }
 
@@ -281,7 +274,7 @@ Note Sema::infer_literal_of(std::string_view name, base::SourceSpan span, const 
   if (use && !known) return {};
   if (!known || !is_enum(program.types, use->type)) {
     NearestName type(name);
-    type.offer_all(types_);
+    type.offer_all(declared.types);
     error(known ? DiagnosticCode::kNotEnumeration : DiagnosticCode::kUnknownType, span,
           "`" + std::string(name) + "` is not an enumeration", known ? "" : type.fix());
     return {};

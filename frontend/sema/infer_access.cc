@@ -6,9 +6,7 @@
 
 namespace frontend {
 
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 Note Sema::infer_member(const Expr& expr) {
   const Expr& head = tree[expr.operand];
@@ -32,7 +30,7 @@ Note Sema::infer_member(const Expr& expr) {
   note.flex = Flex::kNone;
   const ir::Type& type = program.types[operand.type];
   if (ir::is_structure(type.kind)) {
-    if (const Field* field = find_field(operand.type, expr.name.text)) {
+    if (const StructureField* field = declared.find_field(operand.type, expr.name.text)) {
       if (field->bit >= 0) {
         note = part_note(note, static_cast<uint32_t>(field->bit), 1);
         note.bit_member = static_cast<int32_t>(field->member);
@@ -51,7 +49,7 @@ Note Sema::infer_member(const Expr& expr) {
   const uint32_t owner = objects.receiver(expr.operand);
   if (owner != kNoPou) return objects.infer_member(expr, owner, note);
   const bool block = program.types.is_reference(operand.type) &&
-                     pou_of(program.types[operand.type].base) != nullptr;
+                     declared.pou_of(program.types[operand.type].base) != nullptr;
   error(DiagnosticCode::kNoMembers, expr.span, "`" + type_text(operand.type) + "` has no members",
         block                      ? "write `^.` to reach what it refers to"
         : namespaces.is_path(head) ? "the variable hides the namespace of that name"
@@ -68,7 +66,7 @@ std::string_view Sema::enumeration_named(const Expr& head) {
   const VarId variable = head.kind == ExprKind::kName ? find_variable(head.name) : VarId();
   if (variable.valid() && !enumeration(resolve(variable).type)) return {};
   const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
-  if (name.empty() || !types_.contains(name)) return {};
+  if (name.empty() || !declared.types.contains(name)) return {};
   if (!variable.valid()) return name;
   auto use = find_type(name);
   return use && enumeration(use->type) ? name : std::string_view();

@@ -20,7 +20,7 @@ Callee Sema::callee(const Expr& call) {
   if (head.kind == ExprKind::kName) {
     VarId id = find_variable(head);
     if (!id.valid() && !head.global) {
-      if (auto method = objects.method_of(objects.block_of(current_pou_), head.name))
+      if (auto method = objects.method_of(objects.block_of(scope_.number()), head.name))
         return *method;
     }
     if (!id.valid()) id = program_variable(head.name.text, true);
@@ -28,10 +28,10 @@ Callee Sema::callee(const Expr& call) {
       return named_callee(call, head);
     }
     // The function's own name is its result inside; calling it is recursion.
-    if (current_pou_ != kNoPou && id == pous[current_pou_].result) return objects.itself(head);
+    if (scope_.pou != nullptr && id == scope_.pou->result) return objects.itself(head);
     // A variable may have a function's name; calls then still mean the function.
-    bool instance = pou_of(resolve(id).type) != nullptr;
-    if (!instance && standard_.contains(head.name.text)) return named_callee(call, head);
+    bool instance = declared.pou_of(resolve(id).type) != nullptr;
+    if (!instance && library.functions.contains(head.name.text)) return named_callee(call, head);
   }
   if (namespaces.declares(head)) return named_callee(call, head);
   if (objects.is_super(head)) return objects.base_body(head);
@@ -41,9 +41,10 @@ Callee Sema::callee(const Expr& call) {
   }
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};
-  const PouInfo* block = pou_of(note.type);
+  const PouInfo* block = declared.pou_of(note.type);
   if (block == nullptr) {
-    const VarDecl* decl = note.variable.valid() ? variables_[note.variable.index].decl : nullptr;
+    const VarDecl* decl =
+        note.variable.valid() ? declared.variables[note.variable.index].decl : nullptr;
     bool chart = decl != nullptr && decl->implied;
     error(DiagnosticCode::kNotCallable, head.span,
           chart ? quoted(head.name) + " belongs to the chart, whose steps alone run its actions"
@@ -59,15 +60,16 @@ Callee Sema::callee(const Expr& call) {
     return {};
   }
   const Name box = tree.name(call.number);
-  if (std::string_view type = last_name(box);
-      !type.empty() && !ir::same_name(type, block->decl->name.text) && !types_.contains(type)) {
+  if (std::string_view type = last_name(box); !type.empty() &&
+                                              !ir::same_name(type, block->decl->name.text) &&
+                                              !declared.types.contains(type)) {
     error(DiagnosticCode::kOtherBoxType, box.span,
           "the instance is a " + quoted(block->decl->name) + ", its box says " + quoted(box),
           "write " + quoted(block->decl->name) + ", or declare the instance as " + quoted(box));
   }
   Callee callee;
   callee.kind = Callee::Kind::kInstance;
-  callee.pou = static_cast<uint32_t>(pou_by_type_.find(note.type)->second);
+  callee.pou = static_cast<uint32_t>(declared.pou_by_type.find(note.type)->second);
   return callee;
 }
 
@@ -75,20 +77,20 @@ Callee Sema::callee(const Expr& call) {
 Callee Sema::named_callee(const Expr& call, const Expr& head) {
   Callee callee;
   const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
-  bool declared = pou_names_.contains(name);
-  if (!declared && !standard_.contains(name)) declared = use_library(name);
-  if (declared) {
-    uint32_t number = pou_names_.find(name)->second;
-    if (pous[number].decl->kind == PouKind::kFunction) {
+  bool known = declared.pou_names.contains(name);
+  if (!known && !library.functions.contains(name)) known = use_library(name);
+  if (known) {
+    uint32_t number = declared.pou_names.find(name)->second;
+    if (declared.pous[number].decl->kind == PouKind::kFunction) {
       return select_function(call, number);
     }
-    bool block = pous[number].decl->kind == PouKind::kFunctionBlock;
+    bool block = declared.pous[number].decl->kind == PouKind::kFunctionBlock;
     error(block ? DiagnosticCode::kNeedsInstance : DiagnosticCode::kNotCallable, head.span,
           quoted(head.name) + (block ? " is a function block" : " is a program"),
           block ? "declare an instance of it and call that" : "let a task run it");
     return callee;
   }
-  if (auto found = standard_.find(name); found != standard_.end()) {
+  if (auto found = library.functions.find(name); found != library.functions.end()) {
     callee.kind = Callee::Kind::kStandard;
     callee.row = found->second;
     return callee;
@@ -157,7 +159,7 @@ Note Sema::infer_call(const Expr& expr) {
     case Callee::Kind::kMethod:
       break;
   }
-  const PouInfo& function = pous[target.pou];
+  const PouInfo& function = declared.pous[target.pou];
   note.calls = true;
   if (!function.result.valid()) {
     error(DiagnosticCode::kNoResult, expr.span, quoted(function.decl->name) + " has no result",

@@ -77,7 +77,8 @@ Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
 bool Sema::prints_names(ir::TypeId enumeration) const {
   const std::string& name = program.types[without_range(program.types, enumeration)].name;
   for (const TypeDecl& decl : tree.types) {
-    if (!decl.spec.valid() || !ir::same_name(specs_[decl.spec.index].name.text, name)) continue;
+    if (!decl.spec.valid() || !ir::same_name(facts.specs[decl.spec.index].name.text, name))
+      continue;
     return tree.find_attribute(decl.attributes, "to_string") != nullptr;
   }
   return false;

@@ -47,11 +47,11 @@ TypeUse Sema::resolve_reference(const Spec& spec) {
   if (element.kind == SpecKind::kNamed) {
     const std::string_view name =
         namespaces.find(NameSort::kDeclaration, element.qualifiers, element.name);
-    if (auto declared = types_.find(name); declared != types_.end()) {
-      target = specs_[declared->second.index].forward;
+    if (auto known = declared.types.find(name); known != declared.types.end()) {
+      target = facts.specs[known->second.index].forward;
     }
   }
-  if (!target.valid()) target = resolve(spec.element).type;
+  if (!target.valid()) target = resolve_type(spec.element).type;
   if (!target.valid()) return {};
   if (program.types[target].kind == ir::Kind::kReferenceTo) {
     error(DiagnosticCode::kBadReference, spec.span, "a reference to a `" + type_text(target) + "`",
@@ -158,7 +158,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
 // SIZEOF takes a variable or a type.
 ir::TypeId Sema::type_of_argument(ExprId argument) {
   const Expr& expr = tree[argument];
-  if (expr.kind == ExprKind::kType) return resolve(expr.spec()).type;
+  if (expr.kind == ExprKind::kType) return resolve_type(expr.spec()).type;
   if (expr.kind == ExprKind::kName ? !find_variable(expr.name).valid()
                                    : namespaces.declares(expr)) {
     if (auto use = find_type(namespaces.find(NameSort::kDeclaration, expr))) return use->type;

@@ -20,19 +20,19 @@ void add_once(std::vector<ir::TypeId>& list, ir::TypeId type) {
 
 void Objects::inherit() {
   // Grows while library blocks are found.
-  for (uint32_t i = 0; i < sema_.pous.size(); ++i) inherit(i, 0);
+  for (uint32_t i = 0; i < sema_.declared.pous.size(); ++i) inherit(i, 0);
 }
 
 // The block or interface that a name after EXTENDS or IMPLEMENTS means; reports.
 uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interface) {
   if (is_query_interface(sema_.tree, sema_.tree[spec])) return kNoPou;
   Sema::Within scope(sema_, info.number);
-  ir::TypeId type = sema_.resolve(spec).type;
+  ir::TypeId type = sema_.resolve_type(spec).type;
   if (!type.valid()) return kNoPou;
   if (sema_.is_interface(type)) type = sema_.program.types[type].base;
-  const auto found = sema_.pou_by_type_.find(type);
+  const auto found = sema_.declared.pou_by_type.find(type);
   const PouDecl* decl =
-      found == sema_.pou_by_type_.end() ? nullptr : sema_.pous[found->second].decl;
+      found == sema_.declared.pou_by_type.end() ? nullptr : sema_.declared.pous[found->second].decl;
   const bool good =
       decl != nullptr && (interface ? decl->kind == PouKind::kInterface : is_block(decl->kind));
   if (good) return found->second;
@@ -50,16 +50,16 @@ bool Objects::finish_ancestor(const PouInfo& info, uint32_t ancestor, SpecId spe
   uint32_t length = depth + 1;
   if (depth < base::kMaxNesting) {
     inherit(ancestor, depth + 1);
-    if (sema_.pous[ancestor].inheritance != Progress::kDone) {
-      sema_.error(
-          DiagnosticCode::kBadBase, sema_.tree[spec].span,
-          quoted(info.decl->name) + " extends itself" +
-              (ancestor == info.number ? std::string()
-                                       : ", through " + quoted(sema_.pous[ancestor].decl->name)));
+    if (sema_.declared.pous[ancestor].inheritance != Progress::kDone) {
+      sema_.error(DiagnosticCode::kBadBase, sema_.tree[spec].span,
+                  quoted(info.decl->name) + " extends itself" +
+                      (ancestor == info.number
+                           ? std::string()
+                           : ", through " + quoted(sema_.declared.pous[ancestor].decl->name)));
       return false;
     }
     length = 1;
-    for (uint32_t at = ancestor; at != kNoPou; at = sema_.pous[at].base) ++length;
+    for (uint32_t at = ancestor; at != kNoPou; at = sema_.declared.pous[at].base) ++length;
   }
   if (length <= base::kMaxNesting) return true;
   sema_.error(DiagnosticCode::kTooDeep, sema_.tree[spec].span,
@@ -68,7 +68,7 @@ bool Objects::finish_ancestor(const PouInfo& info, uint32_t ancestor, SpecId spe
 }
 
 void Objects::inherit(uint32_t number, uint32_t depth) {
-  PouInfo& info = sema_.pous[number];
+  PouInfo& info = sema_.declared.pous[number];
   if (info.inheritance != Progress::kNew) return;
   info.inheritance = Progress::kBusy;
   const PouDecl& decl = *info.decl;
@@ -76,8 +76,8 @@ void Objects::inherit(uint32_t number, uint32_t depth) {
   std::vector<ir::TypeId> interfaces;
   auto take = [&](uint32_t parent) {
     info.interfaces.push_back(parent);
-    add_once(interfaces, sema_.pous[parent].self);
-    for (ir::TypeId more : sema_.program.types[sema_.pous[parent].self].interfaces) {
+    add_once(interfaces, sema_.declared.pous[parent].self);
+    for (ir::TypeId more : sema_.program.types[sema_.declared.pous[parent].self].interfaces) {
       add_once(interfaces, more);
     }
   };
@@ -88,7 +88,7 @@ void Objects::inherit(uint32_t number, uint32_t depth) {
       take(ancestor);
     } else if (is_block(decl.kind) && info.base == kNoPou) {
       set_base(info, ancestor, sema_.tree[spec].span);
-      for (ir::TypeId more : sema_.program.types[sema_.pous[ancestor].self].interfaces) {
+      for (ir::TypeId more : sema_.program.types[sema_.declared.pous[ancestor].self].interfaces) {
         add_once(interfaces, more);
       }
     }
@@ -107,7 +107,7 @@ void Objects::inherit(uint32_t number, uint32_t depth) {
 
 // The members of the base come first.
 void Objects::set_base(PouInfo& info, uint32_t number, base::SourceSpan span) {
-  const PouInfo& base = sema_.pous[number];
+  const PouInfo& base = sema_.declared.pous[number];
   if (base.decl->is_final) {
     sema_.error(DiagnosticCode::kBadBase, span,
                 quoted(base.decl->name) + " is FINAL; nothing extends it");
@@ -118,7 +118,7 @@ void Objects::set_base(PouInfo& info, uint32_t number, base::SourceSpan span) {
   if (sema_.for_tests() && base.decl->kind == PouKind::kFunctionBlock) {
     info.inherited += kMockMembers;
   }
-  for (VarId id : info.members) sema_.variables_[id.index].index += info.inherited;
+  for (VarId id : info.members) sema_.declared.variables[id.index].index += info.inherited;
   sema_.program.types.edit(info.self).base = base.self;
 }
 

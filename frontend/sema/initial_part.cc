@@ -15,7 +15,7 @@ ir::ConstId Sema::listed(ir::ConstId list, uint64_t index) const {
 
 // Works for an instance whose block is not resolved yet, too.
 ir::ConstId Sema::member_default(ir::TypeId type, uint32_t member) {
-  if (const PouInfo* block = pou_of(type)) {
+  if (const PouInfo* block = declared.pou_of(type)) {
     const VarId id = objects.member_variable(*block, member);
     return id.valid() ? resolve(id).init : ir::ConstId();
   }
@@ -55,9 +55,9 @@ std::optional<TypeUse> Sema::initial_variable(const Expr& expr, VarId id) {
 std::optional<TypeUse> Sema::initial_member(const Expr& expr) {
   auto whole = initial_part(expr.operand);
   if (!whole) return std::nullopt;
-  int32_t member = find_member(whole->type, expr.name.text);
+  int32_t member = declared.find_member(whole->type, expr.name.text);
   ir::TypeId type;
-  if (const PouInfo* block = pou_of(whole->type)) {
+  if (const PouInfo* block = declared.pou_of(whole->type)) {
     const Variable& variable = resolve(objects.find_parameter(*block, expr.name.text));
     member = static_cast<int32_t>(variable.index);
     type = variable.type;

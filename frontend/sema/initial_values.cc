@@ -196,9 +196,9 @@ bool InitialBuilder::set_bit(ExprId id, const Slot& slot, ir::TypeId type,
 }
 
 InitialBuilder::Slot InitialBuilder::find_slot(ir::TypeId type, const Name& name) {
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   if (block == nullptr) {
-    const Sema::Field* field = sema_.find_field(type, name.text);
+    const StructureField* field = sema_.declared.find_field(type, name.text);
     if (field == nullptr) return {};
     bool bit = field->bit >= 0;
     return {static_cast<int32_t>(field->member),

@@ -51,7 +51,7 @@ void InstancePaths::configure(const std::vector<VarBlock>& blocks) {
 
 bool InstancePaths::global(VarId id, Path& path) {
   const Variable& variable = sema_.resolve(id);
-  sema_.variables_[id.index].used = sema_.variables_[id.index].written = true;
+  sema_.declared.variables[id.index].used = sema_.declared.variables[id.index].written = true;
   const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
   path.text = member.name;
   path.global = true;
@@ -90,7 +90,7 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
   if (prefix || config) return true;
   NearestName nearest(expr.name.text);
   for (const ir::ProgramInstance& instance : sema_.program.instances) nearest.offer(instance.name);
-  nearest.offer_all(sema_.globals_);
+  nearest.offer_all(sema_.declared.globals);
   sema_.error(DiagnosticCode::kUnknownName, expr.span,
               "`" + std::string(expr.name.text) + "` is no program instance and no global variable",
               nearest.fix());
@@ -102,7 +102,7 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
   if (path.text.empty()) return head(expr, path);
   int32_t member = -1;
   VarId variable;
-  if (const PouInfo* block = sema_.pou_of(path.type)) {
+  if (const PouInfo* block = sema_.declared.pou_of(path.type)) {
     const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
     if (found.valid() && sema_.resolve(found).view.global != AddressView::kNone) {
       return global(found, path);
@@ -110,11 +110,12 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
     if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
       variable = found;
       path.fixed = path.fixed || has_known_value(sema_.resolve(found));
-      sema_.variables_[found.index].used = sema_.variables_[found.index].written = true;
+      sema_.declared.variables[found.index].used = sema_.declared.variables[found.index].written =
+          true;
       member = static_cast<int32_t>(sema_.resolve(found).index);
     }
   } else {
-    member = sema_.find_member(path.type, expr.name.text);
+    member = sema_.declared.find_member(path.type, expr.name.text);
   }
   if (member < 0) {
     sema_.error(
@@ -189,7 +190,7 @@ bool InstancePaths::walk(ExprId id, Path& path) {
 }
 
 bool InstancePaths::check_type(const VarDecl& decl, const Path& path) {
-  TypeUse use = sema_.resolve(decl.spec);
+  TypeUse use = sema_.resolve_type(decl.spec);
   if (!use.type.valid()) return false;
   if (path.text.empty() || use.type != path.type) {
     sema_.error(DiagnosticCode::kTypeMismatch, sema_.tree[decl.path].span,
@@ -323,7 +324,7 @@ void InstancePaths::check_part(ir::TypeId type, const std::string& path, base::S
 void InstancePaths::check_members(ir::TypeId type, const std::string& prefix, base::SourceSpan span,
                                   const Known& known) {
   const std::vector<ir::Member> members = sema_.program.types[type].members;
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   for (uint32_t i = 0; i < members.size(); ++i) {
     bool open = members[i].address.bit_offset == ir::kOpenAddress;
     bool inside = members[i].section != ir::Section::kInOut && holds_open(members[i].type);
@@ -331,8 +332,8 @@ void InstancePaths::check_members(ir::TypeId type, const std::string& prefix, ba
     std::string path = prefix + members[i].name;
     base::SourceSpan here = span;
     VarId variable;
-    bool declared = type == sema_.program.globals && i < sema_.global_order_.size();
-    if (declared) variable = sema_.global_order_[i];
+    bool declared = type == sema_.program.globals && i < sema_.declared.global_order.size();
+    if (declared) variable = sema_.declared.global_order[i];
     if (block != nullptr) variable = sema_.objects.member_variable(*block, i);
     if (variable.valid()) here = sema_.resolve(variable).name.span;
     if (open && !known.contains(ir::fold_name(path))) {

@@ -46,24 +46,25 @@ VarSection ir_section(const Variable& variable) {
 
 void Sema::resolve_declarations() {
   for (const TypeDecl& decl : tree.types) {
-    if (!in_library(decl.name.span)) resolve(decl.spec);
+    if (!library.holds(decl.name.span)) resolve_type(decl.spec);
   }
   OldNames(*this).rename_types();
   SharedAddresses(*this).find();
   resolve_globals();
   // Grows while library blocks are discovered.
-  for (uint32_t i = 0; i < pous.size(); ++i) resolve_interface(i);
-  declared_ = true;
+  for (uint32_t i = 0; i < declared.pous.size(); ++i) resolve_interface(i);
+  declared.complete = true;
   check_overloads();
   objects.check();
   check_containment();
 }
 
 void Sema::resolve_globals() {
-  for (size_t i = 0; i < global_order_.size(); ++i) {  // grows with instances that are found
-    VarId id = global_order_[i];
+  for (size_t i = 0; i < declared.global_order.size();
+       ++i) {  // grows with instances that are found
+    VarId id = declared.global_order[i];
     resolve(id);
-    const Variable& variable = variables_[id.index];
+    const Variable& variable = declared.variables[id.index];
     program.types.edit(program.globals)
         .members.push_back(member_of(variable, ir::Section::kGlobal));
   }
@@ -103,24 +104,24 @@ static void qualify_method(Sema& sema, Variable& variable, const PouInfo& block,
   if (names.contains(full())) {
     std::string name(block.name);
     std::replace(name.begin(), name.end(), '.', '_');  // of a namespace: no path goes through it
-    variable.method = sema.keep_name(name + "#" + std::string(variable.method));
+    variable.method = sema.declared.keep_name(name + "#" + std::string(variable.method));
   }
   names.insert(full());
 }
 
 void Sema::resolve_interface(uint32_t number) {
-  PouInfo& info = pous[number];
+  PouInfo& info = declared.pous[number];
   if (info.open || info.resolved) return;
   info.resolved = true;
   if (info.base != kNoPou) resolve_interface(info.base);
   Within scope(*this, number);
   for (VarId id : info.variables) resolve(id);
   std::vector<ir::Member> members;
-  if (info.base != kNoPou) members = program.types[pous[info.base].self].members;
+  if (info.base != kNoPou) members = program.types[declared.pous[info.base].self].members;
   std::set<std::string> names;
   for (const ir::Member& member : members) names.insert(ir::fold_name(member.name));
   for (VarId id : info.members) {
-    Variable& variable = variables_[id.index];
+    Variable& variable = declared.variables[id.index];
     qualify_method(*this, variable, info, names);
     members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
@@ -131,7 +132,7 @@ void Sema::resolve_interface(uint32_t number) {
   if (!info.id.valid()) return;
   ir::Pou& pou = program.pous[info.id.index];
   for (VarId id : info.locals) {
-    const Variable& variable = variables_[id.index];
+    const Variable& variable = declared.variables[id.index];
     ir::LocalKind kind =
         id == info.result ? ir::LocalKind::kReturn : local_kind(ir_section(variable));
     pou.locals.push_back({std::string(variable.name.text), variable.type, kind});

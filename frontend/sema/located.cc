@@ -133,20 +133,21 @@ ir::TypeId Sema::type_of_direct(const ir::DirectAddress& address) const {
 // declared global at exactly this address is the same variable.
 uint32_t Sema::direct_member(const Expr& expr) {
   std::string name = ir::fold_name(expr.name.text);
-  if (auto known = direct_members_.find(name); known != direct_members_.end()) {
+  if (auto known = addresses.direct_members.find(name); known != addresses.direct_members.end()) {
     return known->second;
   }
   ir::Type& globals = program.types.edit(program.globals);
-  uint32_t& keys = direct_members_[kKeyCount];
+  uint32_t& keys = addresses.direct_members[kKeyCount];
   for (; keys < globals.members.size(); ++keys) {
     const ir::Member& member = globals.members[keys];
     const bool located = member.address.area != ir::DirectArea::kNone;
-    if (located) direct_members_.emplace(address_key(member.address, member.type), keys);
+    if (located) addresses.direct_members.emplace(address_key(member.address, member.type), keys);
   }
   const ir::DirectAddress address = tree.directs[expr.number].address;
   const ir::TypeId type = type_of_direct(address);
   const auto size = static_cast<uint32_t>(globals.members.size());
-  const uint32_t index = direct_members_.emplace(address_key(address, type), size).first->second;
+  const uint32_t index =
+      addresses.direct_members.emplace(address_key(address, type), size).first->second;
   if (index == size) {
     ir::Member member;
     member.name = expr.name.text;
@@ -156,7 +157,7 @@ uint32_t Sema::direct_member(const Expr& expr) {
     globals.members.push_back(std::move(member));
     addresses.direct_uses.push_back({address, type, expr.span, std::string(expr.name.text)});
   }
-  direct_members_.emplace(std::move(name), index);
+  addresses.direct_members.emplace(std::move(name), index);
   return index;
 }
 

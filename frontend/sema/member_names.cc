@@ -4,13 +4,11 @@
 #include "frontend/sema/sema.h"
 
 namespace frontend {
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 // Quiet for plain names.
 bool Objects::names_method(const Expr& expr) {
-  uint32_t owner = block_of(sema_.current_pou_);
+  uint32_t owner = block_of(sema_.scope_.number());
   if (expr.kind == ExprKind::kName && sema_.find_variable(expr).valid()) return false;
   if (expr.kind == ExprKind::kMember) {
     if (sema_.namespaces.is_scope(sema_.tree[expr.operand])) return false;
@@ -30,7 +28,7 @@ std::optional<Callee> Objects::method_of(uint32_t owner, const Name& name) {
   const Found found = find_code(owner, name.text);
   if (found.code.method == kNoPou) return std::nullopt;
   Callee callee;
-  if (!check_access(sema_.pous[found.code.method], name)) return callee;
+  if (!check_access(sema_.declared.pous[found.code.method], name)) return callee;
   callee.kind = Callee::Kind::kMethod;
   callee.pou = found.code.method;
   return callee;
@@ -41,9 +39,9 @@ Callee Objects::base_body(const Expr& head) {
   Callee callee;
   const uint32_t base = super(head.span);
   if (base == kNoPou) return callee;
-  if (sema_.pous[base].decl->kind == PouKind::kClass) {
+  if (sema_.declared.pous[base].decl->kind == PouKind::kClass) {
     sema_.error(DiagnosticCode::kNotCallable, head.span,
-                quoted(sema_.pous[base].decl->name) + " is a class and has no body",
+                quoted(sema_.declared.pous[base].decl->name) + " is a class and has no body",
                 "call a method of it");
     return callee;
   }
@@ -55,21 +53,21 @@ Callee Objects::base_body(const Expr& head) {
 // A function or method inside of itself.
 Callee Objects::itself(const Expr& head) {
   Callee callee;
-  const PouInfo& own = sema_.pous[sema_.current_pou_];
+  const PouInfo& own = *sema_.scope_.pou;
   if (recursion_depth(*own.decl) == 0) {
     sema_.error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
                 "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
     return callee;
   }
   callee.kind = own.owner == kNoPou ? Callee::Kind::kFunction : Callee::Kind::kMethod;
-  callee.pou = sema_.current_pou_;
+  callee.pou = sema_.scope_.number();
   return callee;
 }
 
 // A variable, property or method of an instance, or after an interface.
 Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   const bool own = is_own(sema_.tree[expr.operand]);
-  const PouInfo& block = sema_.pous[owner];
+  const PouInfo& block = sema_.declared.pous[owner];
   if (VarId id = find_variable(owner, expr.name.text); id.valid()) {
     const Variable& variable = sema_.resolve(id);
     if (own) {
@@ -124,7 +122,7 @@ VarId Objects::value_of(const PouInfo& accessor) const {
 Note Objects::infer_property(const Name& name, const Found& found) {
   const bool readable = found.code.getter != kNoPou;
   if (!readable && found.code.setter == kNoPou) return {};  // said where it is declared
-  const PouInfo& accessor = sema_.pous[readable ? found.code.getter : found.code.setter];
+  const PouInfo& accessor = sema_.declared.pous[readable ? found.code.getter : found.code.setter];
   if (!check_access(accessor, name)) return {};
   const VarId value = value_of(accessor);
   if (!value.valid()) return {};  // said where it is declared

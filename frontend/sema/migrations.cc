@@ -26,8 +26,8 @@ void Migrations::error(base::SourceSpan span, std::string text, std::string fix)
 
 void Migrations::collect() {
   std::set<uint32_t> seen;  // pragmas that stand before a function
-  for (size_t i = 0; i < sema_.pous.size(); ++i) {
-    PouInfo& info = sema_.pous[i];
+  for (size_t i = 0; i < sema_.declared.pous.size(); ++i) {
+    PouInfo& info = sema_.declared.pous[i];
     const Attribute* rule = sema_.tree.find_attribute(info.decl->attributes, kMigrationAttribute);
     if (rule == nullptr || info.library) continue;
     seen.insert(rule->name.span.begin.offset);
@@ -74,7 +74,7 @@ void Migrations::add(PouInfo& info, const Attribute& rule) {
 
 ir::TypeId Migrations::type_of(const Attribute& rule) {
   if (ir::same_name(rule.value, kGlobalsName)) return sema_.program.globals;
-  const PouInfo* found = sema_.find_pou(rule.value);
+  const PouInfo* found = sema_.declared.find_pou(rule.value);
   const bool good = found != nullptr && found->self.valid() && found->owner == kNoPou &&
                     found->decl->kind != PouKind::kInterface;
   if (good) return found->self;
@@ -169,7 +169,7 @@ void Migrations::check_function(const ir::Migration& row) {
   const ir::Program& program = sema_.program;
   std::vector<ir::PouId> reached{row.function};
   std::set<ir::PouId> seen{row.function};
-  const PouInfo& info = *std::find_if(sema_.pous.begin(), sema_.pous.end(),
+  const PouInfo& info = *std::find_if(sema_.declared.pous.begin(), sema_.declared.pous.end(),
                                       [&](const PouInfo& pou) { return pou.id == row.function; });
   for (size_t i = 0; i < reached.size(); ++i) {
     const ir::Pou& pou = program.pous[reached[i].index];

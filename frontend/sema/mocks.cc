@@ -18,14 +18,15 @@ uint32_t add_mock_global(ir::Type& globals, const std::string& name, ir::TypeId 
 }  // namespace
 
 void Sema::add_function_mock(std::string_view name, base::SourceSpan span) {
-  auto found = pou_names_.find(name);
-  if (found == pou_names_.end() || pous[found->second].decl->kind != PouKind::kFunction) {
+  auto found = declared.pou_names.find(name);
+  if (found == declared.pou_names.end() ||
+      declared.pous[found->second].decl->kind != PouKind::kFunction) {
     error(DiagnosticCode::kBadMock, span,
           "`" + std::string(name) + "` is not a function of the project",
           "MOCK_FUNCTION replaces functions; MOCK replaces an instance of a function block");
     return;
   }
-  PouInfo& info = pous[found->second];
+  PouInfo& info = declared.pous[found->second];
   if (info.mock.present) return;
   const std::string prefix = "__MOCK_" + std::string(info.name);
   const ir::TypeId result = info.result.valid() ? resolve(info.result).type : ir::TypeId();
@@ -41,12 +42,12 @@ void Sema::add_function_mock(std::string_view name, base::SourceSpan span) {
 // A MOCK_FUNCTION with a body is a function of its own, under a name that no source can use.
 void Sema::add_mock_body(const PouDecl& decl, bool inside_test) {
   if (decl.name.empty()) return;
-  const std::string& name = made_names_.emplace_back(std::string(decl.name.text) + "#" +
-                                                     std::to_string(made_names_.size()));
-  PouDecl& made = made_decls_.emplace_back(decl);
+  const std::string& name = declared.made_names.emplace_back(
+      std::string(decl.name.text) + "#" + std::to_string(declared.made_names.size()));
+  PouDecl& made = declared.made_decls.emplace_back(decl);
   made.kind = PouKind::kFunction;
   mock_bodies_.push_back({&decl, inside_test, add_pou(made, false, name)});
-  pous[mock_bodies_.back().pou].test = true;
+  declared.pous[mock_bodies_.back().pou].test = true;
 }
 
 void Sema::resolve_mock_bodies() {
@@ -54,11 +55,11 @@ void Sema::resolve_mock_bodies() {
     const PouDecl& decl = *body.decl;
     const std::string_view name =
         namespaces.find(NameSort::kDeclaration, decl.qualifiers, decl.name);
-    auto found = pou_names_.find(name);
+    auto found = declared.pou_names.find(name);
     add_function_mock(name, decl.name.span);
-    if (found == pou_names_.end() || !pous[found->second].mock.present) continue;
-    PouInfo& function = pous[found->second];
-    check_mock_body(decl, pous[body.pou], function);
+    if (found == declared.pou_names.end() || !declared.pous[found->second].mock.present) continue;
+    PouInfo& function = declared.pous[found->second];
+    check_mock_body(decl, declared.pous[body.pou], function);
     function.mock.bodies.push_back(body.pou);
   }
 }
@@ -75,7 +76,7 @@ bool Sema::mock_applies(uint32_t pou, const PouDecl& test) const {
 
 std::vector<const PouInfo*> Sema::mocked_functions() const {
   std::vector<const PouInfo*> out;
-  for (const PouInfo& pou : pous) {
+  for (const PouInfo& pou : declared.pous) {
     if (pou.mock.present && !pou.mock.bodies.empty()) out.push_back(&pou);
   }
   return out;

@@ -56,16 +56,16 @@ struct Variable {
   Storage storage = Storage::kMember;
   uint32_t index = 0;  // member or local number
   uint32_t pou = kNoPou;
-  VarId external;           // the global that a VAR_EXTERNAL means
-  std::string_view list;    // of a global that is visible as `List.name` only
-  std::string_view method;  // whose VAR_INST it is
-  AddressView view;         // it shares bytes with others
-  VarId same_as;            // it is that global, under another name
+  VarId external;             // the global that a VAR_EXTERNAL means
+  std::string_view list;      // of a global that is visible as `List.name` only
+  std::string_view method;    // whose VAR_INST it is
+  AddressView view;           // it shares bytes with others
+  VarId same_as;              // it is that global, under another name
   ir::DirectAddress address;  // of shared bytes themselves
-  VarId edge, last;         // R_EDGE, F_EDGE: what the body sees, and the level before
-  ir::TypeId bound;         // of an open parameter: the type that this instance gives it
-  ir::TypeId type;          // invalid: could not be resolved (already reported)
-  ir::ConstId init;         // invalid: the type's default
+  VarId edge, last;           // R_EDGE, F_EDGE: what the body sees, and the level before
+  ir::TypeId bound;           // of an open parameter: the type that this instance gives it
+  ir::TypeId type;            // invalid: could not be resolved (already reported)
+  ir::ConstId init;           // invalid: the type's default
 };
 
 // CONSTANT inputs and in-outs are only read here: who calls says what they are.
@@ -101,10 +101,11 @@ std::string address_key(const ir::DirectAddress& address, ir::TypeId type);
 
 // What is known of addresses beside the variables that have them.
 struct Addresses {
-  std::unordered_map<std::string, AddressView> views;  // of bare ones, by address_key()
-  bool direct_shares = false;                          // a bare one shares its place
-  std::vector<Located> direct_uses;                    // bare ones that are globals
-  std::vector<Located> configured;                     // by VAR_CONFIG
+  std::unordered_map<std::string, AddressView> views;        // of bare ones, by address_key()
+  bool direct_shares = false;                                // a bare one shares its place
+  std::vector<Located> direct_uses;                          // bare ones that are globals
+  std::vector<Located> configured;                           // by VAR_CONFIG
+  std::unordered_map<std::string, uint32_t> direct_members;  // bare ones that are globals
 };
 
 // A write to the output image, found in a body.
@@ -246,7 +247,7 @@ struct PouInfo {
   const PouDecl* setup = nullptr;  // of a TEST: runs before and after its body
   const PouDecl* teardown = nullptr;
   bool as_block = false;  // a PROGRAM in a build for tests, which have instances of it
-  bool test = false;  // a TEST, or a mock's body: it may use what is private
+  bool test = false;      // a TEST, or a mock's body: it may use what is private
   MockSlots mock;
   bool library = false;
   ir::PouId id;
@@ -282,6 +283,16 @@ struct PouInfo {
   std::vector<OutputWrite> writes;      // filled by lowering, like callees
   std::vector<uint32_t> callees;
   std::vector<OuterUse> outer_uses;
+};
+
+// Whose names are visible. A value: who resolves something of another POU makes another one.
+struct PouScope {
+  PouScope() = default;  // outside of all POUs
+  explicit PouScope(const PouInfo& info) : pou(&info), meaning(info.meaning.get()) {}
+  uint32_t number() const { return pou == nullptr ? kNoPou : pou->number; }
+
+  const PouInfo* pou = nullptr;
+  Meaning* meaning = nullptr;  // of its own, if the POU is an instance
 };
 
 }  // namespace frontend

@@ -232,9 +232,9 @@ std::string_view Namespaces::find_in_library(NameSort sort, std::string_view wri
 // Where the project has its own, the library's is `Standard.name`.
 std::string_view Namespaces::library_alias(std::string_view name) {
   const std::string_view alias = keep("Standard." + std::string(name));
-  auto& blocks = sema_.library_;
+  auto& blocks = sema_.library.pous;
   if (auto pou = blocks.find(name); pou != blocks.end()) blocks.emplace(alias, pou->second);
-  auto& functions = sema_.standard_;
+  auto& functions = sema_.library.functions;
   if (auto row = functions.find(name); row != functions.end()) {
     functions.emplace(alias, row->second);
   }
@@ -310,8 +310,8 @@ bool Namespaces::is_path(const Expr& expr) const {
 }
 
 VarId Namespaces::find_global(const Name& name) {
-  auto found = sema_.globals_.find(find(NameSort::kVariable, name));
-  return found == sema_.globals_.end() ? VarId() : found->second;
+  auto found = sema_.declared.globals.find(find(NameSort::kVariable, name));
+  return found == sema_.declared.globals.end() ? VarId() : found->second;
 }
 
 VarId Namespaces::find_global(const Expr& member) {
@@ -321,15 +321,15 @@ VarId Namespaces::find_global(const Expr& member) {
     if (found != variables->names.end()) return found->second;
   }
   if (!is_namespace(operand)) return {};
-  auto found = sema_.globals_.find(find(NameSort::kVariable, member));
-  return found == sema_.globals_.end() ? VarId() : found->second;
+  auto found = sema_.declared.globals.find(find(NameSort::kVariable, member));
+  return found == sema_.declared.globals.end() ? VarId() : found->second;
 }
 
 const GlobalList* Namespaces::list(const Expr& head) {
   const bool plain = head.kind == ExprKind::kName;
   if (plain && (head.global || sema_.find_variable(head.name).valid())) return nullptr;
-  auto found = sema_.lists_.find(find(NameSort::kList, head));
-  return found == sema_.lists_.end() ? nullptr : &found->second;
+  auto found = sema_.declared.lists.find(find(NameSort::kList, head));
+  return found == sema_.declared.lists.end() ? nullptr : &found->second;
 }
 
 bool Namespaces::declares(const Expr& expr) {

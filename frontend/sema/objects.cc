@@ -18,7 +18,7 @@ std::string code_name(const std::string& block, const PouDecl& decl) {
 }  // namespace
 
 void Objects::collect(uint32_t block) {
-  const PouInfo& info = sema_.pous[block];
+  const PouInfo& info = sema_.declared.pous[block];
   if (has_frame(info.decl->kind)) return;
   for (const PouDecl& member : info.decl->members) {
     if (has_frame(member.kind)) add_member(block, member);
@@ -26,7 +26,7 @@ void Objects::collect(uint32_t block) {
 }
 
 void Objects::add_member(uint32_t block, const PouDecl& decl) {
-  PouInfo& owner = sema_.pous[block];
+  PouInfo& owner = sema_.declared.pous[block];
   MemberCode& code = owner.code[decl.name.text];
   const bool accessor = decl.kind == PouKind::kGetter || decl.kind == PouKind::kSetter;
   uint32_t& slot = !accessor                       ? code.method
@@ -39,13 +39,13 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
                 quoted(decl.name) + " is declared twice in " + quoted(owner.decl->name));
     return;
   }
-  slot = static_cast<uint32_t>(sema_.pous.size());
-  PouInfo& info = sema_.pous.emplace_back();
+  slot = static_cast<uint32_t>(sema_.declared.pous.size());
+  PouInfo& info = sema_.declared.pous.emplace_back();
   info.number = slot;
   info.decl = &decl;
   info.name = decl.name.text;
   if (std::string rule = renamed_from(sema_.tree, decl.attributes); !rule.empty()) {
-    info.old_name = sema_.keep_name(std::move(rule));
+    info.old_name = sema_.declared.keep_name(std::move(rule));
   }
   info.library = owner.library;
   info.owner = block;
@@ -57,17 +57,17 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
 
 uint32_t Objects::block_of(uint32_t pou) const {
   if (pou == kNoPou) return kNoPou;
-  const PouInfo& info = sema_.pous[pou];
+  const PouInfo& info = sema_.declared.pous[pou];
   if (info.owner != kNoPou) return info.owner;
   return info.self.valid() ? pou : kNoPou;
 }
 
 VarId Objects::find_variable(uint32_t block, std::string_view name) const {
-  for (; block != kNoPou; block = sema_.pous[block].base) {
-    const NameMap<VarId>& names = sema_.pous[block].names;
+  for (; block != kNoPou; block = sema_.declared.pous[block].base) {
+    const NameMap<VarId>& names = sema_.declared.pous[block].names;
     auto found = names.find(name);
     if (found == names.end()) continue;
-    const Variable& variable = sema_.variables_[found->second.index];
+    const Variable& variable = sema_.declared.variables[found->second.index];
     if (variable.section == VarSection::kTemp && !in_action_of(block)) continue;
     if (variable.storage != Storage::kLocal) return found->second;
   }
@@ -75,8 +75,8 @@ VarId Objects::find_variable(uint32_t block, std::string_view name) const {
 }
 
 bool Objects::in_action_of(uint32_t block) const {
-  if (sema_.current_pou_ == kNoPou) return false;
-  const PouInfo& current = sema_.pous[sema_.current_pou_];
+  if (sema_.scope_.pou == nullptr) return false;
+  const PouInfo& current = *sema_.scope_.pou;
   return current.owner == block && current.decl->kind == PouKind::kAction;
 }
 
@@ -87,7 +87,7 @@ VarId Objects::find_parameter(const PouInfo& callee, std::string_view name) cons
 
 std::vector<VarId> Objects::variables_of(const PouInfo& pou) const {
   std::vector<const PouInfo*> chain{&pou};
-  while (chain.back()->base != kNoPou) chain.push_back(&sema_.pous[chain.back()->base]);
+  while (chain.back()->base != kNoPou) chain.push_back(&sema_.declared.pous[chain.back()->base]);
   std::vector<VarId> all;
   for (; !chain.empty(); chain.pop_back()) {
     all.insert(all.end(), chain.back()->variables.begin(), chain.back()->variables.end());
@@ -97,18 +97,18 @@ std::vector<VarId> Objects::variables_of(const PouInfo& pou) const {
 
 VarId Objects::member_variable(const PouInfo& block, uint32_t member) const {
   const PouInfo* at = &block;
-  while (member < at->inherited) at = &sema_.pous[at->base];
+  while (member < at->inherited) at = &sema_.declared.pous[at->base];
   member -= at->inherited;
   return member < at->members.size() ? at->members[member] : VarId();
 }
 
 Objects::Found Objects::find_code(uint32_t block, std::string_view name) const {
-  for (uint32_t at = block; at != kNoPou; at = sema_.pous[at].base) {
-    const PouInfo& info = sema_.pous[at];
+  for (uint32_t at = block; at != kNoPou; at = sema_.declared.pous[at].base) {
+    const PouInfo& info = sema_.declared.pous[at];
     if (auto own = info.code.find(name); own != info.code.end()) return {at, own->second};
     if (info.decl->kind != PouKind::kInterface) continue;
     for (ir::TypeId parent : sema_.program.types[info.self].interfaces) {  // all, each once
-      const PouInfo& other = *sema_.pou_of(parent);
+      const PouInfo& other = *sema_.declared.pou_of(parent);
       auto found = other.code.find(name);
       if (found != other.code.end()) return {other.number, found->second};
     }
@@ -117,7 +117,7 @@ Objects::Found Objects::find_code(uint32_t block, std::string_view name) const {
 }
 
 bool Objects::extends(uint32_t pou, uint32_t base) const {
-  for (; pou != kNoPou; pou = sema_.pous[pou].base) {
+  for (; pou != kNoPou; pou = sema_.declared.pous[pou].base) {
     if (pou == base) return true;
   }
   return false;
@@ -125,12 +125,12 @@ bool Objects::extends(uint32_t pou, uint32_t base) const {
 
 std::string Objects::suggestion(uint32_t block, std::string_view name) const {
   NearestName nearest(name);
-  for (; block != kNoPou; block = sema_.pous[block].base) {
-    nearest.offer_all(sema_.pous[block].names);
-    nearest.offer_all(sema_.pous[block].code);
-    if (sema_.pous[block].decl->kind != PouKind::kInterface) continue;
-    for (uint32_t parent : sema_.pous[block].interfaces) {
-      nearest.offer_all(sema_.pous[parent].code);
+  for (; block != kNoPou; block = sema_.declared.pous[block].base) {
+    nearest.offer_all(sema_.declared.pous[block].names);
+    nearest.offer_all(sema_.declared.pous[block].code);
+    if (sema_.declared.pous[block].decl->kind != PouKind::kInterface) continue;
+    for (uint32_t parent : sema_.declared.pous[block].interfaces) {
+      nearest.offer_all(sema_.declared.pous[parent].code);
     }
   }
   return nearest.fix();

@@ -105,7 +105,7 @@ ir::OldNameId OldNames::of_clone(std::string_view name, std::string_view rule,
 void OldNames::rename_types() {
   for (const TypeDecl& decl : sema_.tree.types) {
     const std::string rule = renamed_from(sema_.tree, decl.attributes);
-    if (rule.empty() || !decl.spec.valid() || sema_.in_library(decl.name.span)) continue;
+    if (rule.empty() || !decl.spec.valid() || sema_.library.holds(decl.name.span)) continue;
     const SpecInfo& info = sema_.spec_info(decl.spec);
     if (!info.use.type.valid()) continue;
     ir::Type& type = sema_.program.types.edit(info.use.type);
@@ -126,7 +126,7 @@ void OldNames::rename_types() {
 // changed.
 std::string OldNames::old_list(const PouInfo& info) const {
   if (info.owner == kNoPou) return std::string(info.old_name);
-  const PouInfo& block = sema_.pous[info.owner];
+  const PouInfo& block = sema_.declared.pous[info.owner];
   return joined_rules(with_name(block.old_name, block.name), "#",
                       with_name(info.old_name, info.name),
                       std::string(block.name) + "#" + std::string(info.name));
@@ -135,7 +135,7 @@ std::string OldNames::old_list(const PouInfo& info) const {
 // "" where no rule says anything.
 std::string OldNames::old_member(const Variable& variable) const {
   if (variable.decl == nullptr) {  // the program itself, among the globals
-    const PouInfo* called = variable.type.valid() ? sema_.pou_of(variable.type) : nullptr;
+    const PouInfo* called = variable.type.valid() ? sema_.declared.pou_of(variable.type) : nullptr;
     const bool whole = called != nullptr && called->decl->kind == PouKind::kProgram;
     return whole ? std::string(called->old_name) : std::string();
   }
@@ -145,7 +145,7 @@ std::string OldNames::old_member(const Variable& variable) const {
   if (!variable.list.empty()) front = std::string(variable.list) + ".";
   if (!variable.method.empty()) front = std::string(variable.method) + "#";
   if (variable.pou != kNoPou && !front.empty()) {
-    const PouInfo& info = sema_.pous[variable.pou];
+    const PouInfo& info = sema_.declared.pous[variable.pou];
     const bool of_block = variable.method.empty() || variable.method.find('#') != std::string::npos;
     before = of_block ? old_list(info) : std::string(info.old_name);
     if (!variable.method.empty()) std::replace(before.begin(), before.end(), '.', '_');

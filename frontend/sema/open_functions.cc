@@ -62,7 +62,7 @@ std::vector<Match> Sema::match(const Expr& call, const PouInfo& callee) const {
   for (bool outputs : {false, true}) {
     for (VarId id : callee.variables) {
       if (id == callee.result) continue;
-      VarSection section = variables_[id.index].section;
+      VarSection section = declared.variables[id.index].section;
       bool input = section == VarSection::kInput || section == VarSection::kInOut;
       if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
     }
@@ -83,9 +83,9 @@ std::vector<Match> Sema::match(const Expr& call, const PouInfo& callee) const {
 
 Callee Sema::select_function(const Expr& call, uint32_t first) {
   uint32_t pou = first;
-  if (pous[first].overload != kNoPou) pou = select_overload(call, first);
+  if (declared.pous[first].overload != kNoPou) pou = select_overload(call, first);
   if (pou == kNoPou) return {};
-  if (pous[pou].open) return bind_open(call, pou);
+  if (declared.pous[pou].open) return bind_open(call, pou);
   Callee callee;
   callee.kind = Callee::Kind::kFunction;
   callee.pou = string_variant(call, pou);
@@ -93,11 +93,11 @@ Callee Sema::select_function(const Expr& call, uint32_t first) {
 }
 
 Callee Sema::bind_open(const Expr& call, uint32_t pou) {
-  const PouInfo& info = pous[pou];
+  const PouInfo& info = declared.pous[pou];
   NameMap<Note> generic;
   ParameterTypes types(info.variables.size());
   for (const Match& match : this->match(call, info)) {
-    const Variable& parameter = variables_[match.parameter.index];
+    const Variable& parameter = declared.variables[match.parameter.index];
     const Spec& spec = tree[parameter.decl->spec];
     bool named = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
     if (named && !bind_generic(match, spec, generic)) return {};
@@ -107,7 +107,7 @@ Callee Sema::bind_open(const Expr& call, uint32_t pou) {
   NameMap<ir::TypeId> bound;
   for (const auto& [name, note] : generic) bound.emplace(name, note.type);
   for (const Match& match : this->match(call, info)) {
-    const Variable& parameter = variables_[match.parameter.index];
+    const Variable& parameter = declared.variables[match.parameter.index];
     const Spec& spec = tree[parameter.decl->spec];
     bool open = spec.kind == SpecKind::kArray && spec.open_bounds;
     bool generic_name = spec.kind == SpecKind::kNamed && bound.contains(spec.name.text);
@@ -118,7 +118,7 @@ Callee Sema::bind_open(const Expr& call, uint32_t pou) {
     }
   }
   for (size_t i = 0; i < info.variables.size(); ++i) {
-    const Variable& parameter = variables_[info.variables[i].index];
+    const Variable& parameter = declared.variables[info.variables[i].index];
     if (parameter.decl == nullptr) continue;
     const Spec& spec = tree[parameter.decl->spec];
     if (spec.kind == SpecKind::kArray && spec.open_bounds && !types[i].valid()) {
@@ -175,7 +175,7 @@ bool Sema::bind_array(const Match& match, const Spec& spec, NameMap<Note>& gener
     return true;
   }
   Within scope(*this, kNoPou);
-  ir::TypeId wanted = resolve(spec.element).type;
+  ir::TypeId wanted = resolve_type(spec.element).type;
   if (!wanted.valid() || wanted == array.base) return wanted.valid();
   error(DiagnosticCode::kBadGenericArgument, span,
         "an array of `" + type_text(array.base) + "` where one of `" + type_text(wanted) +
@@ -185,15 +185,15 @@ bool Sema::bind_array(const Match& match, const Spec& spec, NameMap<Note>& gener
 
 // In-out strings keep the capacity that the argument has.
 uint32_t Sema::string_variant(const Expr& call, uint32_t pou) {
-  const PouInfo& info = pous[pou];
+  const PouInfo& info = declared.pous[pou];
   ParameterTypes types(info.variables.size());
   bool other = false;
   for (const Match& match : this->match(call, info)) {
-    if (variables_[match.parameter.index].section != VarSection::kInOut) continue;
-    ir::TypeId declared = resolve(match.parameter).type;
+    if (declared.variables[match.parameter.index].section != VarSection::kInOut) continue;
+    ir::TypeId parameter = resolve(match.parameter).type;
     ir::TypeId given = infer(match.arg->value).type;
-    if (!is_string(program.types, declared) || !is_string(program.types, given)) continue;
-    const ir::Type& wanted = program.types[declared];
+    if (!is_string(program.types, parameter) || !is_string(program.types, given)) continue;
+    const ir::Type& wanted = program.types[parameter];
     const ir::Type& string = program.types[given];
     bool fits = options.dialect != Dialect::kIec || string.capacity >= wanted.capacity;
     if (wanted.kind != string.kind || wanted.capacity == string.capacity || !fits) continue;
@@ -206,11 +206,11 @@ uint32_t Sema::string_variant(const Expr& call, uint32_t pou) {
 }
 
 uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir::TypeId> generic) {
-  const PouInfo& original = pous[pou];
+  const PouInfo& original = declared.pous[pou];
   std::vector<uint32_t> key;
   std::string name;
   for (size_t i = 0; i < types.size(); ++i) {
-    const Variable& variable = variables_[original.variables[i].index];
+    const Variable& variable = declared.variables[original.variables[i].index];
     ir::TypeId type = types[i];
     if (!type.valid() && variable.decl != nullptr) {
       auto found = generic.find(tree[variable.decl->spec].name.text);
@@ -219,11 +219,11 @@ uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir
     key.push_back(type.index);
     if (type.valid()) name += (name.empty() ? "" : ",") + type_text(type);
   }
-  auto [known, added] =
-      instances_.try_emplace({pou, std::move(key)}, static_cast<uint32_t>(pous.size()));
+  auto [known, added] = declared.instances.try_emplace({pou, std::move(key)},
+                                                       static_cast<uint32_t>(declared.pous.size()));
   if (!added) return known->second;
   uint32_t number = known->second;
-  PouInfo& info = pous.emplace_back();
+  PouInfo& info = declared.pous.emplace_back();
   info.number = number;
   info.decl = original.decl;
   info.name = original.name;
@@ -237,9 +237,9 @@ uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir
   program.pous.push_back(std::move(code));
   collect_interface(number);
   for (size_t i = 0; i < types.size() && i < info.variables.size(); ++i) {
-    variables_[info.variables[i].index].bound = types[i];
+    declared.variables[info.variables[i].index].bound = types[i];
   }
-  if (declared_) resolve_interface(number);
+  if (declared.complete) resolve_interface(number);
   return number;
 }
 

@@ -23,7 +23,7 @@ void CommonUses::check_instance_outputs(const ir::ProgramInstance& instance,
                                         std::unordered_map<uint32_t, uint32_t>& owner) {
   const ir::Program& program = sema_.program;
   for (uint32_t pou : reached_from({instance.type})) {
-    for (const OutputWrite& write : sema_.pous[pou].writes) {
+    for (const OutputWrite& write : sema_.declared.pous[pou].writes) {
       uint64_t bits = ir::located_bits(program.types, natural, write.type, write.address);
       auto last = static_cast<uint32_t>((write.address.bit_offset + bits - 1) / 8);
       for (uint32_t byte = write.address.bit_offset / 8; byte <= last; ++byte) {

@@ -35,18 +35,18 @@ uint32_t literal_distance(const Traits& to, Flex flex) {
 
 // nullopt: the function cannot be called like this.
 std::optional<uint32_t> Sema::distance(const Expr& call, uint32_t pou) {
-  const PouInfo& info = pous[pou];
+  const PouInfo& info = declared.pous[pou];
   std::vector<Match> matches = match(call, info);
   if (matches.size() != plain_arguments(call, &info).size()) return std::nullopt;
   uint32_t sum = info.open ? kLossless : 0;
   uint32_t inputs = 0;
   uint32_t given = 0;
   for (VarId id : info.variables) {
-    VarSection section = variables_[id.index].section;
+    VarSection section = declared.variables[id.index].section;
     if (section == VarSection::kInput || section == VarSection::kInOut) ++inputs;
   }
   for (const Match& match : matches) {
-    const Variable& parameter = variables_[match.parameter.index];
+    const Variable& parameter = declared.variables[match.parameter.index];
     if (!is_parameter(parameter.section)) return std::nullopt;
     if (parameter.section != VarSection::kOutput) ++given;
     if (info.open) continue;
@@ -74,7 +74,7 @@ uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
   uint32_t best = kNoPou;
   uint32_t best_distance = 0;
   bool ambiguous = false;
-  for (uint32_t pou = first; pou != kNoPou; pou = pous[pou].overload) {
+  for (uint32_t pou = first; pou != kNoPou; pou = declared.pous[pou].overload) {
     std::optional<uint32_t> found = distance(call, pou);
     if (!found) continue;
     if (best != kNoPou && *found > best_distance) continue;
@@ -82,11 +82,11 @@ uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
     best = pou;
     best_distance = *found;
   }
-  std::string name = "`" + std::string(pous[first].name) + "`";
+  std::string name = "`" + std::string(declared.pous[first].name) + "`";
   if (best == kNoPou) {
     std::string all;
-    for (uint32_t pou = first; pou != kNoPou; pou = pous[pou].overload) {
-      all += (all.empty() ? "" : ", ") + signature(pous[pou]);
+    for (uint32_t pou = first; pou != kNoPou; pou = declared.pous[pou].overload) {
+      all += (all.empty() ? "" : ", ") + signature(declared.pous[pou]);
     }
     error(DiagnosticCode::kNoOverload, call.span, "no " + name + " takes these arguments",
           "there are " + all);
@@ -102,7 +102,7 @@ uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
 std::string Sema::signature(const PouInfo& pou) {
   std::string text;
   for (VarId id : pou.variables) {
-    const Variable& variable = variables_[id.index];
+    const Variable& variable = declared.variables[id.index];
     if (id == pou.result || !is_parameter(variable.section)) continue;
     const Spec& spec = tree[variable.decl->spec];
     std::string type = pou.open && spec.kind == SpecKind::kNamed ? std::string(spec.name.text)
@@ -115,16 +115,18 @@ std::string Sema::signature(const PouInfo& pou) {
 
 // Names in the program are unique: further functions are called after their parameters.
 void Sema::check_overloads() {
-  for (uint32_t first = 0; first < pous.size(); ++first) {
-    for (uint32_t pou = pous[first].overload; pou != kNoPou; pou = pous[pou].overload) {
-      std::string text = signature(pous[pou]);
-      if (ir::same_name(text, signature(pous[first]))) {
-        error(DiagnosticCode::kDuplicateName, pous[pou].decl->name.span,
+  for (uint32_t first = 0; first < declared.pous.size(); ++first) {
+    for (uint32_t pou = declared.pous[first].overload; pou != kNoPou;
+         pou = declared.pous[pou].overload) {
+      std::string text = signature(declared.pous[pou]);
+      if (ir::same_name(text, signature(declared.pous[first]))) {
+        error(DiagnosticCode::kDuplicateName, declared.pous[pou].decl->name.span,
               "`" + text + "` is declared twice",
               "functions of one name differ in their parameters");
         return;
       }
-      if (!pous[pou].open) program.pous[pous[pou].id.index].name = std::move(text);
+      if (!declared.pous[pou].open)
+        program.pous[declared.pous[pou].id.index].name = std::move(text);
     }
   }
 }

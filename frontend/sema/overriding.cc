@@ -27,15 +27,15 @@ const char* slot_text(uint32_t MemberCode::*slot) {
 
 // After all interfaces are resolved.
 void Objects::check() {
-  for (uint32_t i = 0; i < sema_.pous.size(); ++i) {
-    const PouInfo& info = sema_.pous[i];
+  for (uint32_t i = 0; i < sema_.declared.pous.size(); ++i) {
+    const PouInfo& info = sema_.declared.pous[i];
     if (info.owner != kNoPou || !info.self.valid()) continue;
     check_names(info);
     for (const PouDecl& member : info.decl->members) check_member(info, member);
     if (info.decl->kind != PouKind::kFunctionBlock && info.decl->kind != PouKind::kClass) continue;
     check_abstract(info);
     for (ir::TypeId type : std::vector(sema_.program.types[info.self].interfaces)) {
-      check_implements(info, sema_.pous[sema_.pou_by_type_.find(type)->second]);
+      check_implements(info, sema_.declared.pous[sema_.declared.pou_by_type.find(type)->second]);
     }
   }
 }
@@ -43,7 +43,7 @@ void Objects::check() {
 // A derived block adds to its base's names and hides none.
 void Objects::check_names(const PouInfo& info) {
   for (VarId id : info.variables) {
-    const Variable& variable = sema_.variables_[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     const std::string_view name = variable.name.text;
     if (!variable.method.empty() || info.base == kNoPou) continue;
     if (!find_variable(info.base, name).valid() && find_code(info.base, name).owner == kNoPou) {
@@ -51,7 +51,7 @@ void Objects::check_names(const PouInfo& info) {
     }
     sema_.error(DiagnosticCode::kDuplicateName, variable.name.span,
                 quoted(variable.name) + " is declared in the base " +
-                    quoted(sema_.pous[info.base].decl->name) + " already",
+                    quoted(sema_.declared.pous[info.base].decl->name) + " already",
                 "give it another name; the base's is there too");
   }
 }
@@ -62,7 +62,7 @@ void Objects::check_member(const PouInfo& info, const PouDecl& decl) {
   if (known == info.code.end() || !has_frame(decl.kind)) return;
   uint32_t MemberCode::*const slot = slot_of(decl);
   if (known->second.*slot == kNoPou) return;  // a method with the name of a property
-  const PouInfo& method = sema_.pous[known->second.*slot];
+  const PouInfo& method = sema_.declared.pous[known->second.*slot];
   if (method.decl != &decl) return;  // a second one of that name
   if (find_variable(info.base, decl.name.text).valid()) {
     sema_.error(DiagnosticCode::kDuplicateName, decl.name.span,
@@ -88,7 +88,7 @@ void Objects::check_member(const PouInfo& info, const PouDecl& decl) {
 
 void Objects::check_override(const PouInfo& method, const Found& inherited,
                              uint32_t MemberCode::*slot) {
-  const PouInfo& owner = sema_.pous[inherited.owner];
+  const PouInfo& owner = sema_.declared.pous[inherited.owner];
   const Name& name = method.decl->name;
   const bool accessor = slot != &MemberCode::method;
   if (accessor != inherited.code.is_property()) {
@@ -99,7 +99,7 @@ void Objects::check_override(const PouInfo& method, const Found& inherited,
   // A property may get its other accessor here.
   const uint32_t base = inherited.code.*slot;
   if (base == kNoPou) return;
-  const PouInfo& replaced = sema_.pous[base];
+  const PouInfo& replaced = sema_.declared.pous[base];
   const bool hidden = replaced.decl->access == Access::kPrivate;
   if (replaced.decl->is_final || hidden) {
     sema_.error(
@@ -109,10 +109,10 @@ void Objects::check_override(const PouInfo& method, const Found& inherited,
     return;
   }
   check_signature(method, replaced, DiagnosticCode::kBadOverride);
-  for (uint32_t at = inherited.owner; at != kNoPou; at = sema_.pous[at].base) {
-    auto found = sema_.pous[at].code.find(name.text);
-    if (found == sema_.pous[at].code.end() || found->second.*slot == kNoPou) continue;
-    sema_.pous[found->second.*slot].overrides.push_back(method.number);
+  for (uint32_t at = inherited.owner; at != kNoPou; at = sema_.declared.pous[at].base) {
+    auto found = sema_.declared.pous[at].code.find(name.text);
+    if (found == sema_.declared.pous[at].code.end() || found->second.*slot == kNoPou) continue;
+    sema_.declared.pous[found->second.*slot].overrides.push_back(method.number);
   }
 }
 
@@ -121,13 +121,14 @@ bool Objects::check_signature(const PouInfo& method, const PouInfo& wanted, Diag
   auto parameters = [this](const PouInfo& pou) {
     std::vector<VarId> all;
     for (VarId id : pou.locals) {
-      if (id == pou.result || is_parameter(sema_.variables_[id.index].section)) all.push_back(id);
+      if (id == pou.result || is_parameter(sema_.declared.variables[id.index].section))
+        all.push_back(id);
     }
     return all;
   };
   const std::vector<VarId> own = parameters(method);
   const std::vector<VarId> theirs = parameters(wanted);
-  const std::string whose = full_name(sema_.pous[wanted.owner], wanted.decl->name);
+  const std::string whose = full_name(sema_.declared.pous[wanted.owner], wanted.decl->name);
   auto fail = [&](base::SourceSpan span, const std::string& text) {
     sema_.error(code, span, text, "declare the same parameters and result as " + whose);
     return false;
@@ -161,14 +162,14 @@ bool Objects::check_signature(const PouInfo& method, const PouInfo& wanted, Diag
 void Objects::check_abstract(const PouInfo& info) {
   if (info.decl->is_abstract) return;
   std::string missing;
-  for (uint32_t at = info.base; at != kNoPou; at = sema_.pous[at].base) {
-    for (const PouDecl& member : sema_.pous[at].decl->members) {
+  for (uint32_t at = info.base; at != kNoPou; at = sema_.declared.pous[at].base) {
+    for (const PouDecl& member : sema_.declared.pous[at].decl->members) {
       if (!member.is_abstract || !has_frame(member.kind)) continue;
       uint32_t MemberCode::*const slot = slot_of(member);
       const Found found = find_code(info.number, member.name.text);
       if (found.code.*slot != kNoPou && found.owner != at) continue;
       missing += (missing.empty() ? "" : ", ") + std::string(slot_text(slot)) +
-                 full_name(sema_.pous[at], member.name);
+                 full_name(sema_.declared.pous[at], member.name);
     }
   }
   if (missing.empty()) return;
@@ -184,7 +185,7 @@ void Objects::check_implements(const PouInfo& info, const PouInfo& interface) {
     if (wanted == interface.code.end() || !has_frame(member.kind)) continue;
     uint32_t MemberCode::*const slot = slot_of(member);
     if (wanted->second.*slot == kNoPou) continue;
-    PouInfo& prototype = sema_.pous[wanted->second.*slot];
+    PouInfo& prototype = sema_.declared.pous[wanted->second.*slot];
     if (prototype.decl != &member) continue;
     const Found found = find_code(info.number, member.name.text);
     if (found.code.*slot == kNoPou) {
@@ -192,7 +193,7 @@ void Objects::check_implements(const PouInfo& info, const PouInfo& interface) {
       missing += (missing.empty() ? "" : ", ") + std::string(slot_text(slot)) + quoted(member.name);
       continue;
     }
-    const PouInfo& method = sema_.pous[found.code.*slot];
+    const PouInfo& method = sema_.declared.pous[found.code.*slot];
     prototype.overrides.push_back(method.number);
     if (found.owner == info.number || !inherits(info, interface)) {
       check_signature(method, prototype, DiagnosticCode::kNotImplemented);
@@ -208,12 +209,12 @@ void Objects::check_implements(const PouInfo& info, const PouInfo& interface) {
 // Does the base implement it already?
 bool Objects::inherits(const PouInfo& info, const PouInfo& interface) const {
   return info.base != kNoPou &&
-         sema_.program.types.is_a(sema_.pous[info.base].self, interface.self);
+         sema_.program.types.is_a(sema_.declared.pous[info.base].self, interface.self);
 }
 
 void Objects::check_instance(ir::TypeId type, base::SourceSpan span) {
   while (sema_.program.types[type].kind == ir::Kind::kArray) type = sema_.program.types[type].base;
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   if (block == nullptr || !block->decl->is_abstract) return;
   sema_.error(DiagnosticCode::kAbstractInstance, span,
               "`" + sema_.type_text(type) + "` is ABSTRACT and has no instances",

@@ -15,9 +15,9 @@ constexpr uint32_t kMostElements = 65'535;
 
 void Pools::declare() {
   declared_ = true;
-  const size_t count = sema_.pous.size();
+  const size_t count = sema_.declared.pous.size();
   for (size_t i = 0; i < count; ++i) {
-    const PouInfo& info = sema_.pous[i];
+    const PouInfo& info = sema_.declared.pous[i];
     const Attribute* attribute = sema_.tree.find_attribute(info.decl->attributes, kPoolAttribute);
     if (attribute == nullptr || info.library || info.owner != kNoPou) continue;
     const bool block = info.self.valid() && info.id.valid() &&
@@ -29,12 +29,13 @@ void Pools::declare() {
           "put the attribute in front of a FUNCTION_BLOCK that is not ABSTRACT, or of a TYPE");
       continue;
     }
-    const Name name{sema_.keep_name(sema_.program.types[info.self].name), info.decl->name.span};
+    const Name name{sema_.declared.keep_name(sema_.program.types[info.self].name),
+                    info.decl->name.span};
     add(name, info.self, info.number, false, count_of(*attribute));
   }
   for (const TypeDecl& decl : sema_.tree.types) {
     const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kPoolAttribute);
-    if (attribute != nullptr && !sema_.in_library(decl.name.span)) add_type(decl, *attribute);
+    if (attribute != nullptr && !sema_.library.holds(decl.name.span)) add_type(decl, *attribute);
   }
 }
 
@@ -52,7 +53,7 @@ uint32_t Pools::count_of(const Attribute& attribute) {
 
 void Pools::add_type(const TypeDecl& decl, const Attribute& attribute) {
   Sema::Within scope(sema_, kNoPou);
-  const ir::TypeId type = sema_.resolve(decl.spec).type;
+  const ir::TypeId type = sema_.resolve_type(decl.spec).type;
   if (!type.valid()) return;
   const ir::Kind kind = sema_.program.types[type].kind;
   const bool storable = kind != ir::Kind::kReferenceTo && kind != ir::Kind::kInterface;
@@ -68,9 +69,9 @@ void Pools::add_type(const TypeDecl& decl, const Attribute& attribute) {
 
 // FUNCTION_BLOCK Name#box VAR value : Name; END_VAR END_FUNCTION_BLOCK
 uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
-  PouDecl& made = sema_.made_decls_.emplace_back();
+  PouDecl& made = sema_.declared.made_decls.emplace_back();
   made.kind = PouKind::kFunctionBlock;
-  made.name = {sema_.keep_name(std::string(name) + "#box"), decl.name.span};
+  made.name = {sema_.declared.keep_name(std::string(name) + "#box"), decl.name.span};
   made.span = decl.name.span;
   made.scope = decl.scope;
   VarBlock& block = made.blocks.emplace_back();
@@ -98,12 +99,12 @@ void Pools::add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, u
   ir::TypeTable& types = sema_.program.types;
   const std::string text(name.text);
   auto global = [&](const char* suffix, ir::TypeId element) {
-    return sema_.objects.add_hidden_global(sema_.keep_name(text + suffix),
+    return sema_.objects.add_hidden_global(sema_.declared.keep_name(text + suffix),
                                            types.array(element, {{1, count}}), name.span);
   };
-  pool.elements = global("#pool", sema_.pous[block].self);
+  pool.elements = global("#pool", sema_.declared.pous[block].self);
   pool.states = global("#states", types.elementary(ir::Kind::kByte));
-  add_methods(sema_.pous[block].self);
+  add_methods(sema_.declared.pous[block].self);
 }
 
 // __RESET for every block that a pool's elements are or hold, __LEAVE where something leaves.
@@ -112,7 +113,7 @@ void Pools::add_methods(ir::TypeId type) {
   if (!types.contains(type)) return;  // of a member whose type nobody knows
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return;
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   if (block != nullptr && block->reset != kNoPou) return;
   bool inner_leave = false;
   for (size_t i = 0; i < types[type].members.size(); ++i) {
@@ -123,9 +124,11 @@ void Pools::add_methods(ir::TypeId type) {
   }
   if (block == nullptr || !block->id.valid()) return;
   const uint32_t number = block->number;
-  sema_.pous[number].reset = sema_.objects.add_made_method(number, "__RESET", MadeCode::kReset);
+  sema_.declared.pous[number].reset =
+      sema_.objects.add_made_method(number, "__RESET", MadeCode::kReset);
   if (!inner_leave) return;
-  sema_.pous[number].leave = sema_.objects.add_made_method(number, "__LEAVE", MadeCode::kLeave);
+  sema_.declared.pous[number].leave =
+      sema_.objects.add_made_method(number, "__LEAVE", MadeCode::kLeave);
 }
 
 bool Pools::leaves(ir::TypeId type) {
@@ -133,7 +136,7 @@ bool Pools::leaves(ir::TypeId type) {
   if (!types.contains(type)) return false;
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return false;
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   if (block != nullptr && sema_.objects.find_code(block->number, kFbExit).code.method != kNoPou) {
     return true;
   }
@@ -168,7 +171,7 @@ const Pool* Pools::of_new(ExprId id) {
   for (const Pool& pool : pools_) {
     if (!name.empty() && ir::same_name(pool.name, name)) return &pool;
   }
-  const PouInfo* block = name.empty() ? nullptr : sema_.find_pou(name);
+  const PouInfo* block = name.empty() ? nullptr : sema_.declared.find_pou(name);
   const bool type =
       expr->kind == ExprKind::kType || block != nullptr || (!name.empty() && sema_.find_type(name));
   const std::string shown = name.empty() ? "this" : "`" + std::string(name) + "`";

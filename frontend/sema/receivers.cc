@@ -4,9 +4,7 @@
 #include "frontend/sema/sema.h"
 
 namespace frontend {
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 bool Objects::is_own(const Expr& expr) const {
   const Expr& head = expr.kind == ExprKind::kDeref ? sema_.tree[expr.operand] : expr;
@@ -25,25 +23,25 @@ uint32_t Objects::receiver(ExprId operand) {
   if (!note.type.valid()) return kNoPou;
   const bool leads = expr.kind == ExprKind::kThis || sema_.is_interface(note.type);
   const ir::TypeId type = leads ? sema_.program.types[note.type].base : note.type;
-  const PouInfo* pou = sema_.pou_of(type);
+  const PouInfo* pou = sema_.declared.pou_of(type);
   return pou == nullptr ? kNoPou : pou->number;
 }
 
 // The base of the own block; reports.
 uint32_t Objects::super(base::SourceSpan span) {
-  const uint32_t own = block_of(sema_.current_pou_);
-  const uint32_t base = own == kNoPou ? kNoPou : sema_.pous[own].base;
-  if (base == kNoPou && (own == kNoPou || sema_.pous[own].decl->extends.empty())) {
+  const uint32_t own = block_of(sema_.scope_.number());
+  const uint32_t base = own == kNoPou ? kNoPou : sema_.declared.pous[own].base;
+  if (base == kNoPou && (own == kNoPou || sema_.declared.pous[own].decl->extends.empty())) {
     sema_.error(DiagnosticCode::kBadThis, span,
                 own == kNoPou ? std::string("SUPER stands outside of a function block")
-                              : quoted(sema_.pous[own].decl->name) + " has no base",
+                              : quoted(sema_.declared.pous[own].decl->name) + " has no base",
                 "SUPER is for blocks that are declared with EXTENDS");
   }
   return base;
 }
 
 Note Objects::infer_this(const Expr& expr) {
-  const uint32_t own = block_of(sema_.current_pou_);
+  const uint32_t own = block_of(sema_.scope_.number());
   Note note;
   if (expr.kind == ExprKind::kSuper) {
     if (super(expr.span) == kNoPou) return {};
@@ -56,23 +54,23 @@ Note Objects::infer_this(const Expr& expr) {
                 "only code of function blocks, classes and programs has an instance");
     return {};
   }
-  note.type = sema_.program.types.pointer(sema_.pous[own].self);
+  note.type = sema_.program.types.pointer(sema_.declared.pous[own].self);
   return note;
 }
 
 bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
-  const uint32_t own = block_of(sema_.current_pou_);
+  const uint32_t own = block_of(sema_.scope_.number());
   if (sema_.in_test() && access != Access::kInternal) return true;
   const char* word = nullptr;
   if (access == Access::kPrivate && own != owner) word = "PRIVATE";
   if (access == Access::kProtected && !(own != kNoPou && extends(own, owner))) word = "PROTECTED";
   if (access == Access::kInternal &&
-      !sema_.namespaces.inside(name.span.begin, sema_.pous[owner].decl->scope)) {
+      !sema_.namespaces.inside(name.span.begin, sema_.declared.pous[owner].decl->scope)) {
     word = "INTERNAL";
   }
   if (word == nullptr) return true;
   sema_.error(DiagnosticCode::kNotAccessible, name.span,
-              quoted(name) + " is " + word + " in " + quoted(sema_.pous[owner].decl->name),
+              quoted(name) + " is " + word + " in " + quoted(sema_.declared.pous[owner].decl->name),
               access == Access::kPrivate     ? "only that block itself uses it"
               : access == Access::kProtected ? "only blocks that extend that one use it"
                                              : "only code of the same namespace uses it");
@@ -82,7 +80,7 @@ bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
 // A method without a specifier is PUBLIC, but PROTECTED in the standard (edition 3, 6.6.5).
 bool Objects::check_access(const PouInfo& method, const Name& name) {
   Access access = method.decl->access;
-  const PouInfo& owner = sema_.pous[method.owner];
+  const PouInfo& owner = sema_.declared.pous[method.owner];
   const bool closed = sema_.options.dialect == Dialect::kIec &&
                       owner.decl->kind != PouKind::kInterface &&
                       method.decl->kind != PouKind::kAction;

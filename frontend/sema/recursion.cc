@@ -34,12 +34,12 @@ uint32_t Objects::recursion_depth(const PouDecl& decl) {
 
 void Objects::report_circle(const std::vector<uint32_t>& path) {
   auto name = [this](uint32_t pou) {
-    return "`" + sema_.program.pous[sema_.pous[pou].id.index].name + "`";
+    return "`" + sema_.program.pous[sema_.declared.pous[pou].id.index].name + "`";
   };
   std::string through;
   for (size_t i = 1; i < path.size(); ++i) through += (i == 1 ? "" : ", ") + name(path[i]);
   Sema::Within scope(sema_, kNoPou);
-  sema_.error(DiagnosticCode::kRecursiveCall, sema_.pous[path[0]].decl->name.span,
+  sema_.error(DiagnosticCode::kRecursiveCall, sema_.declared.pous[path[0]].decl->name.span,
               name(path[0]) + " calls itself" + (through.empty() ? "" : " through " + through),
               "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
 }
@@ -48,14 +48,14 @@ void Objects::report_circle(const std::vector<uint32_t>& path) {
 void Objects::check_recursion() {
   if (sema_.diagnostics_.has_errors()) return;  // a circle may be one of the mistakes
   enum class Mark : uint8_t { kNew, kOpen, kDone };
-  std::vector<Mark> marks(sema_.pous.size(), Mark::kNew);
-  for (uint32_t start = 0; start < sema_.pous.size(); ++start) {
+  std::vector<Mark> marks(sema_.declared.pous.size(), Mark::kNew);
+  for (uint32_t start = 0; start < sema_.declared.pous.size(); ++start) {
     if (marks[start] != Mark::kNew) continue;
     std::vector<Frame> stack{{start}};
     marks[start] = Mark::kOpen;
     while (!stack.empty()) {
       Frame& top = stack.back();
-      const PouInfo& info = sema_.pous[top.pou];
+      const PouInfo& info = sema_.declared.pous[top.pou];
       const bool declared =
           info.id.valid() && sema_.program.pous[info.id.index].recursion_depth != 0;
       if (declared || top.next == info.callees.size()) {

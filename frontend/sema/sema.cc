@@ -7,33 +7,24 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
     : sources(source_map),
       tree(syntax),
       options(compile_options),
+      library(source_map, library_file),
+      facts(syntax),
       diagnostics_(diagnostics),
       follow_ups_(source_map, syntax, diagnostics),
-      purpose_(purpose),
-      library_file_(library_file),
-      library_end_(source_map.file_count()),
-      specs_(syntax.specs.size()) {
-  notes.grow(syntax.exprs.end());
+      purpose_(purpose) {
   program.name = options.name;
   ir::Type globals;
   globals.kind = ir::Kind::kGlobals;
   program.globals = program.types.declare(std::move(globals));
-  for (const stdlib::FunctionRow& row : stdlib::function_rows()) standard_.emplace(row.name, &row);
-}
-
-bool Sema::in_library(base::SourceSpan span) const {
-  if (!span.begin.valid()) return false;
-  const uint32_t file = sources.file_of(span.begin);
-  return file >= library_file_ && file < library_end_;
 }
 
 void Sema::mark_used(VarId id) {
-  variables_[id.index].used = true;
+  declared.variables[id.index].used = true;
   if (log != nullptr) log->marks.push_back(2 * id.index);
 }
 
 void Sema::mark_written(VarId id) {
-  variables_[id.index].written = true;
+  declared.variables[id.index].written = true;
   if (log != nullptr) log->marks.push_back(2 * id.index + 1);
 }
 
@@ -42,33 +33,33 @@ void Sema::mark_written(VarId id) {
 base::SourceSpan Sema::declared_at(DiagnosticCode code, std::string_view name) const {
   const auto variable = [&](const NameMap<VarId>& names) -> const Name* {
     const auto found = names.find(name);
-    return found == names.end() ? nullptr : &variables_[found->second.index].name;
+    return found == names.end() ? nullptr : &declared.variables[found->second.index].name;
   };
   const Name* place = nullptr;
   if (code == DiagnosticCode::kUnknownName) {
-    if (current_pou_ != kNoPou) place = variable(pous[current_pou_].names);
-    for (uint32_t at = objects.block_of(current_pou_); place == nullptr && at != kNoPou;) {
-      place = variable(pous[at].names);
-      at = pous[at].base;
+    if (scope_.pou != nullptr) place = variable(scope_.pou->names);
+    for (uint32_t at = objects.block_of(scope_.number()); place == nullptr && at != kNoPou;) {
+      place = variable(declared.pous[at].names);
+      at = declared.pous[at].base;
     }
-    if (place == nullptr) place = variable(globals_);
+    if (place == nullptr) place = variable(declared.globals);
   } else if (code == DiagnosticCode::kUnknownType) {
-    const auto found = types_.find(name);
+    const auto found = declared.types.find(name);
     for (const TypeDecl& decl : tree.types) {
-      if (found != types_.end() && decl.spec == found->second) place = &decl.name;
+      if (found != declared.types.end() && decl.spec == found->second) place = &decl.name;
     }
   } else if (code != DiagnosticCode::kUnknownProgram) {
     return {};
   }
-  const PouInfo* const pou = place == nullptr ? find_pou(name) : nullptr;
+  const PouInfo* const pou = place == nullptr ? declared.find_pou(name) : nullptr;
   if (pou != nullptr) place = &pou->decl->name;
-  return place == nullptr || in_library(place->span) ? base::SourceSpan() : place->span;
+  return place == nullptr || library.holds(place->span) ? base::SourceSpan() : place->span;
 }
 
 void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix) {
-  const PouDecl* within = current_pou_ == kNoPou ? nullptr : pous[current_pou_].decl;
-  if (within != nullptr && pous[current_pou_].owner != kNoPou) {
-    within = pous[pous[current_pou_].owner].decl;
+  const PouDecl* within = scope_.pou == nullptr ? nullptr : scope_.pou->decl;
+  if (within != nullptr && scope_.pou->owner != kNoPou) {
+    within = declared.pous[scope_.pou->owner].decl;
   }
   if (follow_ups_.silences(code, within, text)) return;
   base::Diagnostic message{code, span, std::move(text), std::move(fix.text), {}};
@@ -81,12 +72,12 @@ void Sema::error(DiagnosticCode code, base::SourceSpan span, std::string text, F
 }
 
 void Sema::warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix) {
-  if (in_library(span)) return;
+  if (library.holds(span)) return;
   diagnostics_.add(code, span, std::move(text), std::move(fix));
 }
 
 void Sema::allow_extension(std::string_view what, base::SourceSpan span, std::string fix) {
-  if (options.dialect != Dialect::kIec || in_library(span)) return;
+  if (options.dialect != Dialect::kIec || library.holds(span)) return;
   error(DiagnosticCode::kExtension, span, std::string(what) + " is no part of the standard",
         std::move(fix));
 }

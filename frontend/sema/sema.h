@@ -7,8 +7,6 @@
 // sink; what cannot be resolved has an invalid id and silences follow-ups.
 #pragma once
 
-#include <deque>
-#include <map>
 #include <optional>
 
 #include "base/diagnostics.h"
@@ -16,9 +14,11 @@
 #include "frontend/compile.h"
 #include "frontend/sema/callee.h"
 #include "frontend/sema/constant.h"
+#include "frontend/sema/declarations.h"
+#include "frontend/sema/facts.h"
 #include "frontend/sema/follow_ups.h"
+#include "frontend/sema/library.h"
 #include "frontend/sema/namespaces.h"
-#include "frontend/sema/note_store.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/pools.h"
 #include "frontend/sema/start_values.h"
@@ -47,32 +47,25 @@ class Sema {
   void mark_used(VarId id);
   void mark_written(VarId id);
   bool for_tests() const { return purpose_ == Purpose::kTest; }
-  bool in_test() const { return current_pou_ != kNoPou && pous[current_pou_].test; }
+  bool in_test() const { return scope_.pou != nullptr && scope_.pou->test; }
   // Member of the globals that takes the message of a failed assertion.
   uint32_t test_message() const { return test_message_; }
   std::vector<const PouInfo*> mocked_functions() const;
   bool mock_applies(uint32_t pou, const PouDecl& test) const;  // a MOCK_FUNCTION's body
 
   // --- types (types.cc, structures.cc, containment.cc)
-  TypeUse resolve(SpecId spec);
-  std::string_view keep_name(std::string name);  // hidden_variables.cc
+  TypeUse resolve_type(SpecId spec);
   std::optional<TypeUse> find_type(std::string_view qualified);
   bool is_interface(ir::TypeId type) const;  // of an interface variable?
   void check_containment();
 
   // --- variables and members (variables.cc)
   const Variable& resolve(VarId id) {
-    const Variable& variable = variables_[id.index];
+    const Variable& variable = declared.variables[id.index];
     return variable.progress == Progress::kDone ? variable : resolve_now(id);
   }
   VarId find_variable(const Name& name);
   VarId find_variable(const Expr& name);  // `.name` means a global
-  // The instance type's POU; the POU's variable of that name.
-  const PouInfo* pou_of(ir::TypeId instance) const;
-  using Field = StructureField;
-  const Field* find_field(ir::TypeId structure, std::string_view name) const;
-  int32_t find_member(ir::TypeId structure, std::string_view name) const;  // -1: BITs too
-  const PouInfo* find_pou(std::string_view qualified) const;
   // The global pseudo variable of a direct address.
   uint32_t direct_member(const Expr& expr);
   Fix name_suggestion(std::string_view name, bool callable, bool instruction = false) const;
@@ -146,29 +139,29 @@ class Sema {
 
    private:
     Sema& sema_;
-    uint32_t saved_;
-    Meaning* saved_meaning_;
+    PouScope saved_;
   };
 
   const base::SourceMap& sources;
   const Tree& tree;
   const CompileOptions& options;
   ir::Program program;
-  std::deque<PouInfo> pous;  // stable addresses; grows when library blocks are used
+  // Stores, which report nothing.
+  Declarations declared;
+  Library library;
+  Facts facts;
+  Addresses addresses;
   std::vector<TestCase> test_cases;
   BodyLog* log = nullptr;  // of the body that is lowered, where somebody keeps one
   Objects objects{*this};
   StartValues start_values{*this};
   Namespaces namespaces{*this};
   Pools pools{*this};
-  Addresses addresses;
-  NoteStore notes;
 
  private:
   friend class CommonUses;
   friend class OldNames;
   friend class Folder;
-  friend class Namespaces;
   friend class Objects;
   friend class InstancePaths;
   friend class InitialBuilder;
@@ -183,7 +176,6 @@ class Sema {
   void declare_type(const TypeDecl& decl, std::string_view name);
   bool use_library_type(std::string_view name);
   bool use_library_literal(std::string_view name);
-  bool in_library(base::SourceSpan span) const;
   base::SourceSpan declared_at(DiagnosticCode code, std::string_view name) const;
   void forward_declare(const TypeDecl& decl, std::string_view name);
   void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
@@ -193,7 +185,7 @@ class Sema {
   void collect_variables(uint32_t pou, const VarBlock& block);
   VarId shared_by_original(const PouInfo& info, const Variable& variable) const;
   void collect_pous();
-  uint32_t add_pou(const PouDecl& decl, bool library, std::string_view name);
+  uint32_t add_pou(const PouDecl& decl, bool of_library, std::string_view name);
   void add_code(PouInfo& info, std::string name);
   void collect_interface(uint32_t pou);
   void number_variables(PouInfo& info);
@@ -273,7 +265,7 @@ class Sema {
   bool add_base(StructBuild& build, const Spec& spec);
   bool is_bit(SpecId spec) const;
   bool add_field(StructBuild& build, const VarDecl& field);
-  Field add_bit(StructBuild& build, const Name& name, ir::ConstId init, std::string rule);
+  StructureField add_bit(StructBuild& build, const Name& name, ir::ConstId init, std::string rule);
   void close_bits(StructBuild& build);
 
   std::string static_list_name(const PouInfo& info) const;
@@ -363,38 +355,13 @@ class Sema {
   FollowUps follow_ups_;
   Purpose purpose_;
   uint32_t test_message_ = 0;
-  std::deque<PouDecl> made_decls_;
   std::vector<MockBody> mock_bodies_;
-  uint32_t library_file_;
-  uint32_t library_end_;
   const ResourceDecl* resource_ = nullptr;  // the one that is compiled
-  size_t outer_globals_ = 0;  // of global_order_: outside every RESOURCE, when there are several
-  uint32_t current_pou_ = kNoPou;
-  Meaning* meaning_ = nullptr;  // of the current POU, if it has one of its own
+  PouScope scope_;                          // whose names are visible
   uint32_t depth_ = 0;
-  std::deque<Variable> variables_;  // stable addresses, as pous
-  SpecInfo& spec_info(SpecId spec);
-  Note& note(ExprId expr) {
-    return meaning_ != nullptr ? meaning_->notes[expr.index] : notes[expr.index];
-  }
-  std::vector<SpecInfo> specs_;
-  std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances_;
+  SpecInfo& spec_info(SpecId spec) { return facts.of(scope_, spec); }
+  Note& note(ExprId expr) { return facts.of(scope_, expr); }
   bool binds_at_start_ = false;  // what is initialised now may hold an unbound handle
-  bool declared_ = false;        // all interfaces are resolved; later ones at once
-  NameMap<VarId> globals_;
-  NameMap<GlobalList> lists_;
-  std::vector<VarId> global_order_;
-  NameMap<SpecId> types_;
-  NameMap<uint32_t> pou_names_;
-  NameMap<const PouDecl*> library_;
-  NameMap<const TypeDecl*> library_types_;
-  NameMap<const TypeDecl*> library_literals_;
-  NameMap<std::vector<EnumRef>> literals_;
-  NameMap<const stdlib::FunctionRow*> standard_;
-  std::unordered_map<ir::TypeId, uint32_t> pou_by_type_;
-  std::unordered_map<std::string, uint32_t> direct_members_;
-  std::unordered_map<ir::TypeId, NameMap<Field>> structures_;
-  std::deque<std::string> made_names_;
 };
 
 }  // namespace frontend

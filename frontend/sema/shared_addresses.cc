@@ -14,8 +14,8 @@ namespace frontend {
 namespace {
 
 bool can_share(const ir::DirectAddress& address) {
-  return address.bit_size != 0 && (address.area == ir::DirectArea::kMarker ||
-                                   address.area == ir::DirectArea::kOutput);
+  return address.bit_size != 0 &&
+         (address.area == ir::DirectArea::kMarker || address.area == ir::DirectArea::kOutput);
 }
 
 auto place_key(const Located& located) {
@@ -38,7 +38,7 @@ const AddressView* direct_view(const Sema& sema, const Expr& expr) {
 std::string SharedAddresses::path_of(const Variable& variable) const {
   std::string list(variable.list);
   if (list.empty() && variable.storage == Storage::kMember) {
-    list = sema_.static_list_name(sema_.pous[variable.pou]);
+    list = sema_.static_list_name(sema_.declared.pous[variable.pou]);
   }
   return (list.empty() ? "" : list + ".") + std::string(variable.name.text);
 }
@@ -51,21 +51,21 @@ uint64_t SharedAddresses::bits_of(ir::TypeId type, const ir::DirectAddress& addr
 
 void SharedAddresses::collect_variables() {
   std::vector<std::pair<uint32_t, ir::TypeId>> found;
-  for (uint32_t i = 0; i < sema_.variables_.size(); ++i) {
-    const Variable& variable = sema_.variables_[i];
+  for (uint32_t i = 0; i < sema_.declared.variables.size(); ++i) {
+    const Variable& variable = sema_.declared.variables[i];
     const VarDecl* decl = variable.decl;
     const bool located = decl != nullptr && decl->has_address && !decl->incomplete &&
                          decl->levels.count == 0 && can_share(decl->address);
     if (!located || variable.hidden || variable.section == VarSection::kExternal) continue;
     if (variable.storage == Storage::kLocal) continue;  // reported with the variable
     Sema::Within scope(sema_, variable.pou);
-    const ir::TypeId type = sema_.resolve(decl->spec).type;
+    const ir::TypeId type = sema_.resolve_type(decl->spec).type;
     if (type.valid() && sema_.address_problem(type, decl->address, false).empty()) {
       found.emplace_back(i, type);
     }
   }
   for (const auto& [number, type] : found) {
-    const Variable& variable = sema_.variables_[number];
+    const Variable& variable = sema_.declared.variables[number];
     const Located located{variable.decl->address, type, variable.name.span, path_of(variable)};
     places_.push_back({located, VarId(number), bits_of(type, located.address)});
   }
@@ -118,12 +118,12 @@ void SharedAddresses::find() {
 
 bool SharedAddresses::is_of_program(const Place& place) const {
   return place.variable.valid() &&
-         sema_.variables_[place.variable.index].storage != Storage::kGlobal;
+         sema_.declared.variables[place.variable.index].storage != Storage::kGlobal;
 }
 
 bool SharedAddresses::has_several_instances(const Place& place) const {
   if (!is_of_program(place) || sema_.resource_ == nullptr) return false;
-  const PouInfo& pou = sema_.pous[sema_.variables_[place.variable.index].pou];
+  const PouInfo& pou = sema_.declared.pous[sema_.declared.variables[place.variable.index].pou];
   const std::vector<ProgramDecl>& all = sema_.resource_->programs;
   return 1 < std::count_if(all.begin(), all.end(), [&](const ProgramDecl& program) {
            return ir::same_name(program.type.text, pou.name);
@@ -136,8 +136,8 @@ void SharedAddresses::share(const Group& group) {
     return same_place(place.located, group[0].located);
   });
   // A bare address is the global of its place and type (Sema::direct_member).
-  const bool alone = group.size() == 1 || (group.size() == 2 && !group[1].variable.valid() &&
-                                           !is_of_program(group[0]));
+  const bool alone = group.size() == 1 ||
+                     (group.size() == 2 && !group[1].variable.valid() && !is_of_program(group[0]));
   if (one_place && alone && !has_several_instances(group[0])) return;
   if (!check(group, one_place)) return;
   const auto is_direct = [](const Place& place) { return !place.variable.valid(); };
@@ -149,9 +149,9 @@ void SharedAddresses::share(const Group& group) {
 // What one variable at a place cannot be when others have its bytes; empty: it can.
 std::string SharedAddresses::why_not(const Place& place, bool one_place) const {
   if (place.variable.valid()) {
-    const Variable& variable = sema_.variables_[place.variable.index];
+    const Variable& variable = sema_.declared.variables[place.variable.index];
     if (is_of_program(place)) {
-      const PouInfo& pou = sema_.pous[variable.pou];
+      const PouInfo& pou = sema_.declared.pous[variable.pou];
       if (pou.decl->kind != PouKind::kProgram) return "each instance has one of its own";
       if (variable.section != VarSection::kLocal) return "callers of the program pass it";
     }
@@ -241,16 +241,16 @@ bool SharedAddresses::check_initial(const Group& group) {
 // One variable with several names.
 void SharedAddresses::make_one(const Group& group) {
   const VarId first = group[0].variable;
-  Variable& one = sema_.variables_[first.index];
+  Variable& one = sema_.declared.variables[first.index];
   if (one.storage != Storage::kGlobal) {
-    one.list = sema_.keep_name(sema_.static_list_name(sema_.pous[one.pou]));
+    one.list = sema_.declared.keep_name(sema_.static_list_name(sema_.declared.pous[one.pou]));
     programs_[one.pou] = true;
     one.storage = Storage::kGlobal;
-    sema_.global_order_.push_back(first);
+    sema_.declared.global_order.push_back(first);
   }
   for (const Place& place : group) {
     if (!place.variable.valid() || place.variable == first) continue;
-    Variable& other = sema_.variables_[place.variable.index];
+    Variable& other = sema_.declared.variables[place.variable.index];
     one.retain = one.retain || other.retain;
     if (other.init.valid()) one.init = other.init;
     other.same_as = first;
@@ -261,7 +261,7 @@ void SharedAddresses::make_one(const Group& group) {
 // For a bit: the initial value of its byte, with the other bits in it.
 ir::ConstId SharedAddresses::initial_of(const Group& group, const Place& place) const {
   if (!place.variable.valid()) return {};
-  const ir::ConstId own = sema_.variables_[place.variable.index].init;
+  const ir::ConstId own = sema_.declared.variables[place.variable.index].init;
   if (place.bits != 1 || !own.valid()) return own;
   const uint32_t begin = place.located.address.bit_offset / 8 * 8;
   uint64_t byte = 0;
@@ -271,7 +271,8 @@ ir::ConstId SharedAddresses::initial_of(const Group& group, const Place& place) 
   for (; other != group.end() && other->located.address.bit_offset < begin + 8; ++other) {
     const uint32_t bit = other->located.address.bit_offset;
     const bool here = other->bits == 1 && other->variable.valid();
-    const ir::ConstId init = here ? sema_.variables_[other->variable.index].init : ir::ConstId();
+    const ir::ConstId init =
+        here ? sema_.declared.variables[other->variable.index].init : ir::ConstId();
     if (init.valid() && sema_.program.constants[init].bits != 0) byte |= 1u << bit % 8;
   }
   return byte == 0 ? ir::ConstId() : sema_.program.constants.scalar(byte);
@@ -318,7 +319,7 @@ void SharedAddresses::make_structure(const Group& group) {
   }
   for (auto& [id, view] : views) {
     view.global = global;
-    sema_.variables_[id.index].view = view;
+    sema_.declared.variables[id.index].view = view;
   }
 }
 
@@ -329,20 +330,21 @@ uint32_t SharedAddresses::add_global(const Group& group, ir::Type type, uint32_t
   for (const Place& place : group) {
     end = std::max(end, place.end());
     if (!place.variable.valid()) continue;
-    shared.retain = shared.retain || sema_.variables_[place.variable.index].retain;
+    shared.retain = shared.retain || sema_.declared.variables[place.variable.index].retain;
   }
   const ir::DirectArea area = group[0].located.address.area;
-  shared.name = {sema_.keep_name(ir::shared_name(area, begin, static_cast<uint32_t>(end - 1) / 8)),
-                 group[0].located.span};
+  shared.name = {
+      sema_.declared.keep_name(ir::shared_name(area, begin, static_cast<uint32_t>(end - 1) / 8)),
+      group[0].located.span};
   shared.section = VarSection::kGlobal;
   shared.storage = Storage::kGlobal;
   shared.used = shared.written = shared.hidden = true;
   shared.progress = Progress::kDone;
   shared.type = sema_.program.types.declare(std::move(type));
   shared.address = {area, 8 * begin, 8};
-  const auto number = static_cast<uint32_t>(sema_.variables_.size());
-  sema_.variables_.push_back(std::move(shared));
-  sema_.global_order_.push_back(VarId(number));
+  const auto number = static_cast<uint32_t>(sema_.declared.variables.size());
+  sema_.declared.variables.push_back(std::move(shared));
+  sema_.declared.global_order.push_back(VarId(number));
   return number;
 }
 
@@ -350,7 +352,7 @@ uint32_t SharedAddresses::add_global(const Group& group, ir::Type type, uint32_t
 void SharedAddresses::leave(const Group& group) {
   for (const Place& place : group) {
     if (!place.variable.valid()) continue;
-    Variable& variable = sema_.variables_[place.variable.index];
+    Variable& variable = sema_.declared.variables[place.variable.index];
     if (variable.storage != Storage::kGlobal) programs_[variable.pou] = true;
     variable.storage = Storage::kGlobal;
   }
@@ -358,26 +360,29 @@ void SharedAddresses::leave(const Group& group) {
 
 void SharedAddresses::number_again() {
   const auto is_view = [&](VarId id) {
-    const Variable& variable = sema_.variables_[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     return variable.same_as.valid() || variable.view.global != AddressView::kNone;
   };
-  const auto outer = sema_.global_order_.begin() + static_cast<ptrdiff_t>(sema_.outer_globals_);
-  sema_.outer_globals_ -=
-      static_cast<size_t>(std::count_if(sema_.global_order_.begin(), outer, is_view));
-  std::erase_if(sema_.global_order_, is_view);
-  for (uint32_t i = 0; i < sema_.global_order_.size(); ++i) {
-    sema_.variables_[sema_.global_order_[i].index].index = i;
+  const auto outer =
+      sema_.declared.global_order.begin() + static_cast<ptrdiff_t>(sema_.declared.outer_globals);
+  sema_.declared.outer_globals -=
+      static_cast<size_t>(std::count_if(sema_.declared.global_order.begin(), outer, is_view));
+  std::erase_if(sema_.declared.global_order, is_view);
+  for (uint32_t i = 0; i < sema_.declared.global_order.size(); ++i) {
+    sema_.declared.variables[sema_.declared.global_order[i].index].index = i;
   }
   const auto global_of = [&](AddressView& view) {
-    if (view.global != AddressView::kNone) view.global = sema_.variables_[view.global].index;
+    if (view.global != AddressView::kNone)
+      view.global = sema_.declared.variables[view.global].index;
   };
   for (auto& [key, view] : sema_.addresses.views) global_of(view);
-  for (Variable& variable : sema_.variables_) {
-    if (variable.same_as.valid()) variable.index = sema_.variables_[variable.same_as.index].index;
+  for (Variable& variable : sema_.declared.variables) {
+    if (variable.same_as.valid())
+      variable.index = sema_.declared.variables[variable.same_as.index].index;
     global_of(variable.view);
     if (variable.view.global != AddressView::kNone) variable.index = variable.view.global;
   }
-  for (const auto& [pou, left] : programs_) sema_.number_variables(sema_.pous[pou]);
+  for (const auto& [pou, left] : programs_) sema_.number_variables(sema_.declared.pous[pou]);
 }
 
 }  // namespace frontend

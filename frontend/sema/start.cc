@@ -56,7 +56,7 @@ bool Objects::constructs(ir::TypeId type) {
   if (!types.has_members(type)) return false;
   if (auto known = constructs_.find(type); known != constructs_.end()) return known->second;
   constructs_.emplace(type, false);  // types do not contain themselves
-  const PouInfo* block = sema_.pou_of(type);
+  const PouInfo* block = sema_.declared.pou_of(type);
   bool needed = block != nullptr && (block->stamp.valid() || has_members_to_start(*block));
   for (size_t i = 0; block == nullptr && i < types[type].members.size() && !needed; ++i) {
     needed = constructs(types[type].members[i].type);
@@ -69,9 +69,9 @@ const Spec* Objects::construction(SpecId id) const {
   for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
     const Spec& spec = sema_.tree[id];
     if (spec.kind != SpecKind::kNamed || spec.has_args) break;
-    auto named = sema_.types_.find(
+    auto named = sema_.declared.types.find(
         sema_.namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name));
-    if (named == sema_.types_.end()) break;
+    if (named == sema_.declared.types.end()) break;
     id = named->second;
   }
   return &sema_.tree[id];
@@ -93,13 +93,13 @@ void Objects::check_start_arguments(SpecId id, ir::TypeId type, std::vector<bool
 // there has to be an FB_Init for them.
 void Objects::check_start_arguments() {
   std::vector<bool> good(sema_.tree.specs.size());
-  for (const Variable& variable : sema_.variables_) {
+  for (const Variable& variable : sema_.declared.variables) {
     if (variable.decl == nullptr || !variable.decl->spec.valid()) continue;
     check_start_arguments(variable.decl->spec, variable.type, good);
   }
   auto check = [&](SpecId id) {
     if (!id.valid() || !has_arguments(sema_.tree, id)) return;
-    check_start_arguments(id, sema_.resolve(id).type, good);
+    check_start_arguments(id, sema_.resolve_type(id).type, good);
   };
   for (const TypeDecl& decl : sema_.tree.types) check(decl.spec);
   for (const Spec& spec : sema_.tree.specs) {
@@ -120,30 +120,30 @@ void Objects::add_start() {
   sema_.pools.declare();
   check_start_arguments();
   if (sema_.diagnostics_.has_errors()) return;
-  const auto count = static_cast<uint32_t>(sema_.pous.size());
+  const auto count = static_cast<uint32_t>(sema_.declared.pous.size());
   for (uint32_t i = 0; i < count; ++i) {
-    if (!has_members_to_start(sema_.pous[i])) continue;
-    sema_.pous[i].start = add_made_method(i, ir::kStartProgram, MadeCode::kStart);
+    if (!has_members_to_start(sema_.declared.pous[i])) continue;
+    sema_.declared.pous[i].start = add_made_method(i, ir::kStartProgram, MadeCode::kStart);
   }
-  for (uint32_t i = 0; i < sema_.variables_.size(); ++i) {
-    const Variable& variable = sema_.variables_[i];
+  for (uint32_t i = 0; i < sema_.declared.variables.size(); ++i) {
+    const Variable& variable = sema_.declared.variables[i];
     const bool global = variable.storage == Storage::kGlobal && !variable.hidden &&
                         variable.section != VarSection::kExternal;
     if (global && starts(variable.type, variable.init)) start_globals_.push_back(VarId(i));
   }
   for (const ir::ProgramInstance& instance : sema_.program.instances) {
-    const PouInfo* program = sema_.pou_of(instance.type);
+    const PouInfo* program = sema_.declared.pou_of(instance.type);
     if (program != nullptr && program->start != kNoPou) {
       start_globals_.push_back(program_global(instance.name, *program));
     }
   }
   for (uint32_t i = 0; i < count; ++i) {
-    const PouInfo& program = sema_.pous[i];
+    const PouInfo& program = sema_.declared.pous[i];
     if (!program.as_block || program.start == kNoPou) continue;
     start_globals_.push_back(sema_.program_variable(program.name, false));
   }
   const bool pools = !sema_.pools.all().empty();
-  if (sema_.pous.size() == count && start_globals_.empty() && !pools) return;
+  if (sema_.declared.pous.size() == count && start_globals_.empty() && !pools) return;
   change_flag_ = add_hidden_global(kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword),
                                    base::SourceSpan());
   if (start_globals_.empty() && !pools) return;  // blocks that nobody has an instance of
@@ -159,14 +159,14 @@ bool Objects::has_members_to_start(const PouInfo& info) {
 }
 
 uint32_t Objects::add_made_method(uint32_t block, std::string_view name, MadeCode code) {
-  const auto number = static_cast<uint32_t>(sema_.pous.size());
-  const PouInfo& owner = sema_.pous[block];
-  PouDecl& made = sema_.made_decls_.emplace_back();
+  const auto number = static_cast<uint32_t>(sema_.declared.pous.size());
+  const PouInfo& owner = sema_.declared.pous[block];
+  PouDecl& made = sema_.declared.made_decls.emplace_back();
   made.kind = PouKind::kMethod;
   made.name = {name, owner.decl->name.span};
   made.span = owner.decl->span;
   made.scope = owner.decl->scope;
-  PouInfo& info = sema_.pous.emplace_back();
+  PouInfo& info = sema_.declared.pous.emplace_back();
   info.number = number;
   info.decl = &made;
   info.library = owner.library;
@@ -181,11 +181,11 @@ uint32_t Objects::add_made_method(uint32_t block, std::string_view name, MadeCod
 // The global through which code reaches a program instance.
 VarId Objects::program_global(const std::string& name, const PouInfo& program) {
   if (ir::same_name(name, program.decl->name.text)) return sema_.program_variable(name, false);
-  return add_hidden_global(sema_.keep_name(name), program.self, program.decl->name.span);
+  return add_hidden_global(sema_.declared.keep_name(name), program.self, program.decl->name.span);
 }
 
 VarId Objects::add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span) {
-  VarId id(static_cast<uint32_t>(sema_.variables_.size()));
+  VarId id(static_cast<uint32_t>(sema_.declared.variables.size()));
   Variable variable;
   variable.name = {name, span};
   variable.section = VarSection::kGlobal;
@@ -195,7 +195,7 @@ VarId Objects::add_hidden_global(std::string_view name, ir::TypeId type, base::S
   variable.stamp = name == kChangeFlag;
   variable.type = type;
   variable.progress = Progress::kDone;
-  sema_.variables_.push_back(variable);
+  sema_.declared.variables.push_back(variable);
   sema_.place_global(id);
   return id;
 }
@@ -203,14 +203,14 @@ VarId Objects::add_hidden_global(std::string_view name, ir::TypeId type, base::S
 // A member that says what has been done with an instance (ir/types/stamps.h). The nearest base
 // that needs one has it for all that extend it.
 void Objects::add_stamp(PouInfo& block) {
-  if (block.base != kNoPou) block.stamp = sema_.pous[block.base].stamp;
+  if (block.base != kNoPou) block.stamp = sema_.declared.pous[block.base].stamp;
   bool needed = false;
   for (std::string_view name : {kFbInit, kFbExit, kFbReinit}) {
     auto found = block.code.find(name);
     needed = needed || (found != block.code.end() && found->second.method != kNoPou);
   }
   if (block.stamp.valid() || !needed) return;
-  block.stamp = VarId(static_cast<uint32_t>(sema_.variables_.size()));
+  block.stamp = VarId(static_cast<uint32_t>(sema_.declared.variables.size()));
   Variable variable;
   variable.name = {kStampName, block.decl->name.span};
   variable.used = true;
@@ -220,7 +220,7 @@ void Objects::add_stamp(PouInfo& block) {
   variable.index = block.inherited + static_cast<uint32_t>(block.members.size());
   variable.type = sema_.program.types.elementary(ir::Kind::kDword);
   variable.progress = Progress::kDone;
-  sema_.variables_.push_back(variable);
+  sema_.declared.variables.push_back(variable);
   block.members.push_back(block.stamp);
 }
 
@@ -238,13 +238,13 @@ uint32_t Objects::stamp_of(const PouInfo& block) const {
 }
 
 void Objects::add_start_program() {
-  PouDecl& made = sema_.made_decls_.emplace_back();
+  PouDecl& made = sema_.declared.made_decls.emplace_back();
   made.kind = PouKind::kProgram;
   const VarId first = start_globals_.empty() ? sema_.pools.all()[0].elements : start_globals_[0];
-  made.span = sema_.variables_[first.index].name.span;
+  made.span = sema_.declared.variables[first.index].name.span;
   made.name = {ir::kStartProgram, made.span};
   const uint32_t number = sema_.add_pou(made, false, made.name.text);
-  sema_.pous[number].made = MadeCode::kStart;
+  sema_.declared.pous[number].made = MadeCode::kStart;
   sema_.resolve_interface(number);
   ir::Task task;
   task.name = ir::kStartProgram;
@@ -253,7 +253,7 @@ void Objects::add_start_program() {
   const auto at = static_cast<uint32_t>(sema_.program.tasks.size());
   sema_.program.tasks.push_back(std::move(task));
   sema_.program.instances.push_back(
-      {std::string(ir::kStartProgram), sema_.pous[number].self, at, {}});
+      {std::string(ir::kStartProgram), sema_.declared.pous[number].self, at, {}});
 }
 
 }  // namespace frontend

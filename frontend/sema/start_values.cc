@@ -22,8 +22,8 @@ ir::ConstId StartValues::add(ExprId id) {
 
 // The name of the POU that is looked at; "" outside of all.
 std::string StartValues::scope_name() const {
-  if (sema_.current_pou_ == kNoPou) return {};
-  const PouInfo& pou = sema_.pous[sema_.current_pou_];
+  if (sema_.scope_.pou == nullptr) return {};
+  const PouInfo& pou = *sema_.scope_.pou;
   if (pou.self.valid()) return ir::fold_name(sema_.program.types[pou.self].name);
   return ir::fold_name(pou.decl->name.text);
 }

@@ -53,7 +53,7 @@ std::vector<std::string> old_names_of_bits(const std::vector<std::string>& names
 // A structure on its way into the type table.
 struct Sema::StructBuild {
   ir::Type type;
-  NameMap<Field> names;
+  NameMap<StructureField> names;
   int32_t bit_member = -1;  // BIT members still go there
   uint32_t bits = 0;
   uint64_t bit_defaults = 0;
@@ -81,12 +81,12 @@ TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
   } else {
     made = program.types.declare(std::move(build.type));
   }
-  structures_.emplace(made, std::move(build.names));
+  declared.structures.emplace(made, std::move(build.names));
   return {made, {}};
 }
 
 bool Sema::add_base(StructBuild& build, const Spec& spec) {
-  TypeUse base = resolve(spec.element);
+  TypeUse base = resolve_type(spec.element);
   if (!base.type.valid()) return false;
   if (!ir::is_structure(program.types[base.type].kind)) {
     error(DiagnosticCode::kTypeMismatch, tree[spec.element].span,
@@ -94,7 +94,7 @@ bool Sema::add_base(StructBuild& build, const Spec& spec) {
     return false;
   }
   build.type.members = program.types[base.type].members;
-  build.names = structures_[base.type];
+  build.names = declared.structures[base.type];
   return true;
 }
 
@@ -120,11 +120,11 @@ bool Sema::check_overlap(const ir::Type& type, base::SourceSpan span) {
 bool Sema::is_bit(SpecId id) const {
   const Spec& spec = tree[id];
   return spec.kind == SpecKind::kNamed && spec.qualifiers.count == 0 &&
-         ir::same_name(spec.name.text, "BIT") && !types_.contains(spec.name.text);
+         ir::same_name(spec.name.text, "BIT") && !declared.types.contains(spec.name.text);
 }
 
 bool Sema::add_field(StructBuild& build, const VarDecl& field) {
-  TypeUse use = resolve(field.spec);
+  TypeUse use = resolve_type(field.spec);
   if (!use.type.valid()) return false;
   if (!field.names.empty()) objects.check_instance(use.type, field.names[0].span);
   bool bit = is_bit(field.spec);
@@ -144,7 +144,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
     }
   }
   for (const Name& name : field.names) {
-    Field where{static_cast<uint32_t>(build.type.members.size()), -1};
+    StructureField where{static_cast<uint32_t>(build.type.members.size()), -1};
     if (bit) where = add_bit(build, name, member.init, renamed_from(tree, field.attributes));
     where.spec = field.spec;
     if (!build.names.emplace(name.text, where).second) {
@@ -161,8 +161,8 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
 }
 
 // Neighbouring BIT members share a BYTE, which has the names of all of them.
-Sema::Field Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init,
-                          std::string rule) {
+StructureField Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init,
+                             std::string rule) {
   if (build.bits == kBitsPerByte) close_bits(build);
   if (build.bit_member < 0) {
     build.bit_member = static_cast<int32_t>(build.type.members.size());
@@ -192,18 +192,6 @@ void Sema::close_bits(StructBuild& build) {
   build.bit_defaults = 0;
   build.bit_names.clear();
   build.bit_rules.clear();
-}
-
-const Sema::Field* Sema::find_field(ir::TypeId structure, std::string_view name) const {
-  auto table = structures_.find(structure);
-  if (table == structures_.end()) return nullptr;
-  auto found = table->second.find(name);
-  return found == table->second.end() ? nullptr : &found->second;
-}
-
-int32_t Sema::find_member(ir::TypeId structure, std::string_view name) const {
-  const Field* field = find_field(structure, name);
-  return field == nullptr || field->bit >= 0 ? -1 : static_cast<int32_t>(field->member);
 }
 
 }  // namespace frontend

@@ -21,14 +21,14 @@ void check_test_name(Sema& sema, const PouDecl& test) {
   const std::string_view name = without_quotes(test.name.text);
   if (name.empty()) {
     sema.error(DiagnosticCode::kExpectedName, test.name.span, "the test has no name",
-          "say what it shows: TEST 'pump starts'");
+               "say what it shows: TEST 'pump starts'");
   }
   for (const TestCase& other : sema.test_cases) {
     if (other.file != at.file || other.name != name || name.empty()) continue;
     sema.error(DiagnosticCode::kDuplicateName, test.name.span,
-          "a second test `" + std::string(name) + "`; the first is in line " +
-              std::to_string(other.line),
-          "give it a name of its own: reports and --filter know tests by it");
+               "a second test `" + std::string(name) + "`; the first is in line " +
+                   std::to_string(other.line),
+               "give it a name of its own: reports and --filter know tests by it");
   }
 }
 
@@ -75,8 +75,8 @@ void Sema::collect_test(const PouDecl& test) {
     slot = &other;
   }
   const std::string& name =
-      made_names_.emplace_back("__TEST" + std::to_string(test_cases.size() + 1));
-  PouDecl& made = made_decls_.emplace_back(test);
+      declared.made_names.emplace_back("__TEST" + std::to_string(test_cases.size() + 1));
+  PouDecl& made = declared.made_decls.emplace_back(test);
   made.kind = PouKind::kProgram;
   made.name = {name, test.name.span};
   if (setup != nullptr) {
@@ -86,14 +86,14 @@ void Sema::collect_test(const PouDecl& test) {
     made.blocks.insert(made.blocks.end(), teardown->blocks.begin(), teardown->blocks.end());
   }
   const uint32_t number = add_pou(made, false, name);
-  pous[number].test = true;
+  declared.pous[number].test = true;
   // Not every test needs all that SETUP makes.
-  for (VarId id : pous[number].variables) {
-    const uint32_t at = variables_[id.index].name.span.begin.offset;
-    variables_[id.index].used = at < test.span.begin.offset || at >= test.span.end.offset;
+  for (VarId id : declared.pous[number].variables) {
+    const uint32_t at = declared.variables[id.index].name.span.begin.offset;
+    declared.variables[id.index].used = at < test.span.begin.offset || at >= test.span.end.offset;
   }
-  pous[number].setup = setup;
-  pous[number].teardown = teardown;
+  declared.pous[number].setup = setup;
+  declared.pous[number].teardown = teardown;
   const base::SourceLocation at = sources.locate(test.span.begin);
   test_cases.push_back(
       {std::string(without_quotes(test.name.text)), std::string(at.file), at.line, name});
@@ -102,7 +102,7 @@ void Sema::collect_test(const PouDecl& test) {
 void Sema::configure_tests() {
   program.tasks.push_back({"Tests", kTestPeriodNs, 0, 0});
   for (const TestCase& test : test_cases) {
-    const PouInfo& pou = pous[pou_names_.find(test.instance)->second];
+    const PouInfo& pou = declared.pous[declared.pou_names.find(test.instance)->second];
     program.instances.push_back({test.instance, pou.self, 0, {}});
   }
 }

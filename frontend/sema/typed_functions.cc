@@ -63,9 +63,9 @@ Callee Sema::typed_callee(std::string_view name) const {
   Callee callee;
   size_t cut = name.rfind('_');
   if (cut == std::string_view::npos) return callee;
-  auto row = standard_.find(name.substr(0, cut));
+  auto row = library.functions.find(name.substr(0, cut));
   auto kind = kind_of_name(name.substr(cut + 1));
-  if (row == standard_.end() || !kind) return callee;
+  if (row == library.functions.end() || !kind) return callee;
   ir::TypeId type = program.types.elementary(*kind);
   if (!program.types.is_scalar(type)) return callee;
   if (!has_typed_name(*row->second, traits_of(program.types, type))) return callee;

@@ -13,7 +13,7 @@ constexpr uint64_t kMaxElements = base::kMaxTypeBytes;
 
 }  // namespace
 
-TypeUse Sema::resolve(SpecId id) {
+TypeUse Sema::resolve_type(SpecId id) {
   if (!id.valid()) return {};
   SpecInfo& info = spec_info(id);
   if (info.progress == Progress::kDone) return info.use;
@@ -77,17 +77,17 @@ std::optional<TypeUse> Sema::find_type(std::string_view name) {
     }
     return TypeUse{program.types.elementary(*kind), {}};
   }
-  if (ir::same_name(name, "BIT") && !types_.contains(name)) {
+  if (ir::same_name(name, "BIT") && !declared.types.contains(name)) {
     return TypeUse{program.types.elementary(ir::Kind::kBool), {}};
   }
-  bool declared_pou = pou_names_.contains(name);
-  if (!declared_pou && !types_.contains(name)) use_library_type(name);
-  if (auto declared = types_.find(name); declared != types_.end()) {
+  bool declared_pou = declared.pou_names.contains(name);
+  if (!declared_pou && !declared.types.contains(name)) use_library_type(name);
+  if (auto known = declared.types.find(name); known != declared.types.end()) {
     Within global(*this, kNoPou);
-    return resolve(declared->second);
+    return resolve_type(known->second);
   }
-  if (!pou_names_.contains(name) && !use_library(name)) return std::nullopt;
-  const PouInfo& pou = pous[pou_names_.find(name)->second];
+  if (!declared.pou_names.contains(name) && !use_library(name)) return std::nullopt;
+  const PouInfo& pou = declared.pous[declared.pou_names.find(name)->second];
   if (!pou.self.valid()) return std::nullopt;
   // A variable of an interface refers to what implements it.
   const bool interface = pou.decl->kind == PouKind::kInterface;
@@ -105,8 +105,8 @@ bool Sema::is_interface(ir::TypeId type) const {
 }
 
 TypeUse Sema::resolve_named(const Spec& spec) {
-  if (current_pou_ != kNoPou && pous[current_pou_].meaning != nullptr) {
-    const NameMap<ir::TypeId>& generic = pous[current_pou_].meaning->generic;
+  if (scope_.meaning != nullptr) {
+    const NameMap<ir::TypeId>& generic = scope_.meaning->generic;
     if (auto found = generic.find(spec.name.text); found != generic.end()) {
       return {found->second, {}};
     }
@@ -114,9 +114,9 @@ TypeUse Sema::resolve_named(const Spec& spec) {
   const std::string_view name = namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name);
   if (auto use = find_type(name)) return *use;
   NearestName nearest(name);
-  nearest.offer_all(types_);
-  nearest.offer_all(pou_names_);
-  nearest.offer_all(library_);
+  nearest.offer_all(declared.types);
+  nearest.offer_all(declared.pou_names);
+  nearest.offer_all(library.pous);
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     nearest.offer(ir::elementary_name(static_cast<ir::Kind>(i)));
   }
@@ -176,7 +176,7 @@ TypeUse Sema::resolve_array(const Spec& spec) {
     elements *= count;
     dims.push_back(dimension);
   }
-  TypeUse element = resolve(spec.element);
+  TypeUse element = resolve_type(spec.element);
   if (!element.type.valid() || dims.empty()) return {};
   TypeUse use{program.types.array(element.type, std::move(dims)), {}};
   if (element.init.valid()) {
@@ -188,7 +188,7 @@ TypeUse Sema::resolve_array(const Spec& spec) {
 }
 
 TypeUse Sema::resolve_subrange(const Spec& spec) {
-  TypeUse base = resolve(spec.element);
+  TypeUse base = resolve_type(spec.element);
   if (!base.type.valid()) return {};
   Traits traits = traits_of(program.types, base.type);
   if (!traits.integer && !traits.bits) {
@@ -214,7 +214,7 @@ TypeUse Sema::resolve_subrange(const Spec& spec) {
 
 TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
   TypeUse base{program.types.elementary(ir::Kind::kInt), {}};
-  if (spec.element.valid()) base = resolve(spec.element);
+  if (spec.element.valid()) base = resolve_type(spec.element);
   if (!base.type.valid()) return {};
   Traits traits = traits_of(program.types, base.type);
   if (!traits.integer && !traits.bits) {

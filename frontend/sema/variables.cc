@@ -13,8 +13,8 @@ constexpr uint32_t kMaxVariableChain = 500;
 }  // namespace
 
 VarId Sema::find_variable(const Name& name) {
-  if (current_pou_ != kNoPou) {
-    const PouInfo& pou = pous[current_pou_];
+  if (scope_.pou != nullptr) {
+    const PouInfo& pou = *scope_.pou;
     if (auto found = pou.names.find(name.text); found != pou.names.end()) return found->second;
     VarId id = objects.find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name.text);
     if (id.valid()) return id;
@@ -24,12 +24,12 @@ VarId Sema::find_variable(const Name& name) {
 
 VarId Sema::find_variable(const Expr& name) {
   if (!name.global) return find_variable(name.name);
-  auto found = globals_.find(name.name.text);
-  return found == globals_.end() ? VarId() : found->second;
+  auto found = declared.globals.find(name.name.text);
+  return found == declared.globals.end() ? VarId() : found->second;
 }
 
 const Variable& Sema::resolve_now(VarId id) {
-  Variable& variable = variables_[id.index];
+  Variable& variable = declared.variables[id.index];
   if (variable.progress == Progress::kBusy || depth_ >= kMaxVariableChain) {
     if (!variable.type.valid() || variable.constant) {
       error(DiagnosticCode::kRecursiveConstant, variable.name.span,
@@ -47,14 +47,15 @@ const Variable& Sema::resolve_now(VarId id) {
 }
 
 void Sema::resolve_variable(VarId id) {
-  Variable& variable = variables_[id.index];
+  Variable& variable = declared.variables[id.index];
   if (variable.decl == nullptr) {  // a function's result
-    TypeUse use = resolve(pous[variable.pou].decl->result);
+    TypeUse use = resolve_type(declared.pous[variable.pou].decl->result);
     variable.type = use.type;
     variable.init = use.init;
     return;
   }
-  TypeUse use = variable.bound.valid() ? TypeUse{variable.bound, {}} : resolve(variable.decl->spec);
+  TypeUse use =
+      variable.bound.valid() ? TypeUse{variable.bound, {}} : resolve_type(variable.decl->spec);
   variable.type = use.type;
   variable.init = use.init;
   if (!variable.type.valid()) return;
@@ -87,7 +88,7 @@ void Sema::resolve_external(Variable& variable) {
   const VarId found = namespaces.find_global(variable.name);
   if (!found.valid()) {
     NearestName nearest(variable.name.text);
-    nearest.offer_all(globals_);
+    nearest.offer_all(declared.globals);
     error(DiagnosticCode::kUnknownName, variable.name.span,
           "there is no global variable " + quoted(variable.name), nearest.fix());
     variable.type = {};
@@ -125,8 +126,8 @@ void Sema::resolve_initial(Variable& variable) {
 
 void Sema::check_placement(const Variable& variable) {
   const ir::Type& type = program.types[variable.type];
-  const PouInfo* block = pou_of(variable.type);
-  const bool in_test = variable.pou != kNoPou && pous[variable.pou].test;
+  const PouInfo* block = declared.pou_of(variable.type);
+  const bool in_test = variable.pou != kNoPou && declared.pous[variable.pou].test;
   if (type.kind == ir::Kind::kProgram || (block != nullptr && block->as_block && !in_test)) {
     error(DiagnosticCode::kTypeMismatch, variable.name.span,
           "`" + type.name + "` is a program; a variable cannot be one",
@@ -145,31 +146,22 @@ void Sema::check_placement(const Variable& variable) {
   }
 }
 
-const PouInfo* Sema::pou_of(ir::TypeId instance) const {
-  auto found = pou_by_type_.find(instance);
-  return found == pou_by_type_.end() ? nullptr : &pous[found->second];
-}
-
-const PouInfo* Sema::find_pou(std::string_view qualified) const {
-  auto found = pou_names_.find(qualified);
-  return found == pou_names_.end() ? nullptr : &pous[found->second];
-}
-
 Fix Sema::name_suggestion(std::string_view name, bool callable, bool instruction) const {
   NearestName nearest(name);
-  if (current_pou_ != kNoPou) nearest.offer_all(pous[current_pou_].names);
-  for (uint32_t at = objects.block_of(current_pou_); at != kNoPou; at = pous[at].base) {
-    auto own = pous[at].names.find(name);
-    if (own != pous[at].names.end() && variables_[own->second.index].section == VarSection::kTemp) {
+  if (scope_.pou != nullptr) nearest.offer_all(scope_.pou->names);
+  for (uint32_t at = objects.block_of(scope_.number()); at != kNoPou; at = declared.pous[at].base) {
+    auto own = declared.pous[at].names.find(name);
+    if (own != declared.pous[at].names.end() &&
+        declared.variables[own->second.index].section == VarSection::kTemp) {
       return "VAR_TEMP is seen by the body and its actions only; declare it in VAR";
     }
-    nearest.offer_all(pous[at].names);
-    nearest.offer_all(pous[at].code);
+    nearest.offer_all(declared.pous[at].names);
+    nearest.offer_all(declared.pous[at].code);
   }
-  nearest.offer_all(globals_);
+  nearest.offer_all(declared.globals);
   if (callable) {
-    nearest.offer_all(pou_names_);
-    nearest.offer_all(standard_);
+    nearest.offer_all(declared.pou_names);
+    nearest.offer_all(library.functions);
     if (for_tests()) {
       for (const TestCallRow& row : test_calls()) nearest.offer(row.name);
     }
@@ -177,7 +169,7 @@ Fix Sema::name_suggestion(std::string_view name, bool callable, bool instruction
       for (const IlOperator& op : il_operators()) nearest.offer(op.word);
     }
   } else {
-    nearest.offer_all(literals_);
+    nearest.offer_all(declared.literals);
   }
   return nearest.fix();
 }

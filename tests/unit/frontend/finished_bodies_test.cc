@@ -47,7 +47,7 @@ Chunks lower(const std::string& text) {
   out.at_first = held(parsed->tree);
   out.expressions = parsed->tree.exprs.size();
   frontend::FinishedBodies finished(sema, parsed->tree);
-  for (uint32_t pou = 0; pou < sema.pous.size(); ++pou) {
+  for (uint32_t pou = 0; pou < sema.declared.pous.size(); ++pou) {
     frontend::lower_body(sema, pou);
     finished.finish(pou);
   }

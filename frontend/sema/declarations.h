@@ -1,0 +1,50 @@
+// Store: what the sources and the library declare, by name, and the records that declarations
+// became. It reports nothing and resolves nothing. Collection fills it (declarations.cc), and what
+// is used for the first time is added while bodies are looked at; records have stable addresses.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "frontend/sema/model.h"
+
+namespace frontend {
+
+struct Declarations {
+  // The instance type's POU, or null.
+  const PouInfo* pou_of(ir::TypeId instance) const;
+  const PouInfo* find_pou(std::string_view qualified) const;
+  const StructureField* find_field(ir::TypeId structure, std::string_view name) const;
+  // The number of a member that is no BIT; -1: there is none.
+  int32_t find_member(ir::TypeId structure, std::string_view name) const;
+  // Keeps a name that no source has.
+  std::string_view keep_name(std::string name);
+
+  std::deque<PouInfo> pous;        // grows when library blocks are used
+  std::deque<Variable> variables;  // by VarId
+  bool complete = false;           // all interfaces are resolved; later ones at once
+
+  // By name; types and POUs by their full name.
+  NameMap<uint32_t> pou_names;
+  NameMap<SpecId> types;
+  NameMap<VarId> globals;
+  NameMap<GlobalList> lists;
+  NameMap<std::vector<EnumRef>> literals;
+  std::vector<VarId> global_order;
+  size_t outer_globals = 0;  // of global_order: outside every RESOURCE, when there are several
+
+  std::unordered_map<ir::TypeId, uint32_t> pou_by_type;
+  std::unordered_map<ir::TypeId, NameMap<StructureField>> structures;
+  // Instances of functions with open parameters: by function and types.
+  std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances;
+
+  std::deque<std::string> made_names;  // names and declarations that no source has
+  std::deque<PouDecl> made_decls;
+};
+
+}  // namespace frontend

@@ -1,0 +1,32 @@
+// Looks things up among the declarations.
+#include "frontend/sema/declarations.h"
+
+namespace frontend {
+
+const PouInfo* Declarations::pou_of(ir::TypeId instance) const {
+  const auto found = pou_by_type.find(instance);
+  return found == pou_by_type.end() ? nullptr : &pous[found->second];
+}
+
+const PouInfo* Declarations::find_pou(std::string_view qualified) const {
+  const auto found = pou_names.find(qualified);
+  return found == pou_names.end() ? nullptr : &pous[found->second];
+}
+
+const StructureField* Declarations::find_field(ir::TypeId structure, std::string_view name) const {
+  const auto table = structures.find(structure);
+  if (table == structures.end()) return nullptr;
+  const auto found = table->second.find(name);
+  return found == table->second.end() ? nullptr : &found->second;
+}
+
+int32_t Declarations::find_member(ir::TypeId structure, std::string_view name) const {
+  const StructureField* field = find_field(structure, name);
+  return field == nullptr || field->bit >= 0 ? -1 : static_cast<int32_t>(field->member);
+}
+
+std::string_view Declarations::keep_name(std::string name) {
+  return made_names.emplace_back(std::move(name));
+}
+
+}  // namespace frontend
