@@ -201,7 +201,7 @@ bool Resident::lower_anew(uint32_t pou, Undo& undo) {
       constants_between(old.end_constant, std::min(size, old.end_constant + kSpare));
   program.pous[info.id.index] = heads_[info.id.index];
   program.constants.set_next(old.first_constant);
-  sema.follow_ups_.forget();
+  sema.report.forget();
   info.callees.clear();
   info.writes.clear();
   diagnostics_ = base::Diagnostics();

@@ -59,7 +59,7 @@ ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::Sou
   if (!to) return condition;
   if (!traits_of(types(), to->type).boolean) {
     sema_.error(DiagnosticCode::kTypeMismatch, tree_[left].span,
-                "a `" + sema_.type_text(to->type) + "` cannot be " +
+                "a `" + sema_.report.type_text(to->type) + "` cannot be " +
                     (op == AssignOp::kSet ? "set" : "reset"),
                 "only BOOL variables can be");
     return condition;
@@ -98,7 +98,7 @@ void Body::assign_aggregate(const Target& to, ExprId value) {
   const Expr& expr = tree_[value];
   if (types().is_instance(to.type)) {
     sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                "instances of `" + sema_.type_text(to.type) + "` cannot be assigned",
+                "instances of `" + sema_.report.type_text(to.type) + "` cannot be assigned",
                 "copy the variables that matter one by one");
     return;
   }
@@ -111,9 +111,9 @@ void Body::assign_aggregate(const Target& to, ExprId value) {
   if (!note.type.valid()) return;
   bool strings = is_string(types(), to.type) && types()[note.type].kind == types()[to.type].kind;
   if (!strings && note.type != to.type) {
-    sema_.error(
-        DiagnosticCode::kTypeMismatch, expr.span,
-        "`" + sema_.type_text(note.type) + "` does not go with `" + sema_.type_text(to.type) + "`");
+    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
+                "`" + sema_.report.type_text(note.type) + "` does not go with `" +
+                    sema_.report.type_text(to.type) + "`");
     return;
   }
   if (strings && note.constant) {  // says so when the text is too long

@@ -38,8 +38,8 @@ void Body::evaluate_input(Binding& binding, bool keep) {
       is_string(types(), parameter.type) && types()[note.type].kind == types()[parameter.type].kind;
   if (!strings && note.type != parameter.type) {
     sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
-                quoted_name(parameter.name) + " is `" + sema_.type_text(parameter.type) +
-                    "`, the argument is `" + sema_.type_text(note.type) + "`");
+                quoted_name(parameter.name) + " is `" + sema_.report.type_text(parameter.type) +
+                    "`, the argument is `" + sema_.report.type_text(note.type) + "`");
     return;
   }
   binding.place = place(id);
@@ -86,8 +86,8 @@ bool Body::evaluate_in_out(Binding& binding) {
   }
   if (note.type != parameter.type) {
     sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
-                quoted_name(parameter.name) + " is `" + sema_.type_text(parameter.type) +
-                    "`, the argument is `" + sema_.type_text(note.type) + "`",
+                quoted_name(parameter.name) + " is `" + sema_.report.type_text(parameter.type) +
+                    "`, the argument is `" + sema_.report.type_text(note.type) + "`",
                 "pass a variable of exactly this type");
     return false;
   }
@@ -151,8 +151,8 @@ void Body::take_outputs(std::vector<Binding>& bindings,
       continue;
     }
     sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
-                quoted_name(variable.name) + " is `" + sema_.type_text(variable.type) +
-                    "`, its target is `" + sema_.type_text(binding.target->type) + "`");
+                quoted_name(variable.name) + " is `" + sema_.report.type_text(variable.type) +
+                    "`, its target is `" + sema_.report.type_text(binding.target->type) + "`");
   }
   for (Binding& binding : bindings) {
     const Variable& variable = sema_.resolve(binding.variable);
@@ -164,7 +164,7 @@ void Body::take_outputs(std::vector<Binding>& bindings,
     if (!types().is_scalar(binding.target->type)) {
       sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
                   "the target of " + quoted_name(variable.name) + " is no `" +
-                      sema_.type_text(variable.type) + "`");
+                      sema_.report.type_text(variable.type) + "`");
       continue;
     }
     store(*binding.target, convert({out, variable.type}, binding.target->type, binding.arg->span));
@@ -381,7 +381,7 @@ ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId ty
       break;  // scalars
   }
   sema_.error(DiagnosticCode::kNotSupported, expr.span,
-              std::string(callee.row->name) + " of `" + sema_.type_text(type) + "`");
+              std::string(callee.row->name) + " of `" + sema_.report.type_text(type) + "`");
   return temporary_place(type);
 }
 

@@ -48,7 +48,7 @@ void Body::case_statement(const Stmt& stmt) {
   bool usable = traits.integer || traits.bits || traits.enumeration;
   if (type.valid() && !usable) {
     sema_.error(DiagnosticCode::kBadSelector, tree_[stmt.value].span,
-                "the selector is `" + sema_.type_text(type) + "`");
+                "the selector is `" + sema_.report.type_text(type) + "`");
   }
   if (!type.valid() || !usable) type = elementary(ir::Kind::kDint);
   if (usable) type = computed_type(sema_, sema_.infer(stmt.value));

@@ -5,7 +5,6 @@
 namespace frontend {
 namespace {
 
-
 // A stored qualifier that counts time.
 struct Timer {
   ActionQualifier qualifier;
@@ -230,7 +229,7 @@ std::optional<Target> ChartBody::variable_of(const sfc::Action& action) {
   if (!note.type.valid()) return std::nullopt;
   if (!traits_of(body_.types(), note.type).boolean) {
     sema_.error(DiagnosticCode::kUnknownAction, name.span,
-                "`" + std::string(name.name.text) + "` is `" + sema_.type_text(note.type) +
+                "`" + std::string(name.name.text) + "` is `" + sema_.report.type_text(note.type) +
                     "`; an action is an ACTION or a BOOL variable",
                 "declare an ACTION that writes it");
     return std::nullopt;

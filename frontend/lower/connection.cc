@@ -42,8 +42,9 @@ void Body::connect_outputs() {
       build_.copy(to->place, from);
     } else {
       sema_.error(DiagnosticCode::kWrongArgument, arg.span,
-                  "`" + std::string(output.name.text) + "` is `" + sema_.type_text(output.type) +
-                      "`, its target is `" + sema_.type_text(to->type) + "`");
+                  "`" + std::string(output.name.text) + "` is `" +
+                      sema_.report.type_text(output.type) + "`, its target is `" +
+                      sema_.report.type_text(to->type) + "`");
     }
   }
 }

@@ -67,8 +67,9 @@ bool Body::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
   switch (implicit_fit(types(), from, to, sema_.options.dialect)) {
     case Fit::kNone:
       sema_.error(DiagnosticCode::kTypeMismatch, span,
-                  "`" + sema_.type_text(from) + "` does not go with `" + sema_.type_text(to) + "`",
-                  sema_.conversion_fix(to));
+                  "`" + sema_.report.type_text(from) + "` does not go with `" +
+                      sema_.report.type_text(to) + "`",
+                  sema_.report.conversion_fix(to));
       return false;
     case Fit::kNarrowing:
       return sema_.allow_narrowing(from, to, span);

@@ -32,8 +32,9 @@ void Body::open_enable(Enable& enable) {
   if (enable.eno != nullptr) {
     enable.target = target(enable.eno->value);
     if (enable.target && !traits_of(types(), enable.target->type).boolean) {
-      sema_.error(DiagnosticCode::kBadEnable, enable.eno->span,
-                  "ENO is BOOL, its target is `" + sema_.type_text(enable.target->type) + "`");
+      sema_.error(
+          DiagnosticCode::kBadEnable, enable.eno->span,
+          "ENO is BOOL, its target is `" + sema_.report.type_text(enable.target->type) + "`");
       enable.target.reset();
     }
   }

@@ -76,7 +76,8 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   bool bits = traits.bits && sema_.options.dialect != Dialect::kIec;
   if (to->bit_size != 0 || to->character.valid() || (!traits.integer && !bits)) {
     sema_.error(DiagnosticCode::kBadLoopVariable, tree_[stmt.target].span,
-                "a FOR variable of `" + sema_.type_text(to->type) + "`", "use an integer variable");
+                "a FOR variable of `" + sema_.report.type_text(to->type) + "`",
+                "use an integer variable");
     return false;
   }
   loop.variable = to->place;

@@ -16,12 +16,12 @@ Receiver Body::receiver_of(const Expr& head) {
     return receiver;
   }
   const Note& note = sema_.infer(id);
-  const bool interface = sema_.is_interface(note.type) && !note.reference.valid();
+  const bool interface = is_interface(types(), note.type) && !note.reference.valid();
   const bool indexed =
       operand.kind == ExprKind::kIndex && types().is_reference(sema_.infer(operand.operand).type);
   if (interface) {
     receiver.handle = natural(id).value;
-  } else if (note.reference.valid() && sema_.is_interface(note.type)) {
+  } else if (note.reference.valid() && is_interface(types(), note.type)) {
     receiver.handle = build_.load(place(id), ir::Scalar::kU64);
   } else if (note.reference.valid() || operand.kind == ExprKind::kDeref || indexed) {
     receiver.handle = handle_of(id);

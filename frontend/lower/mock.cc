@@ -46,7 +46,7 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
   if (block == nullptr || !block->mock.present) {
     if (type.valid()) {
       sema_.error(DiagnosticCode::kBadMock, expr.span,
-                  "`" + sema_.type_text(type) + "` is no function block",
+                  "`" + sema_.report.type_text(type) + "` is no function block",
                   "MOCK takes an instance, MOCK_FUNCTION a function; a variable is just set");
     }
     return std::nullopt;

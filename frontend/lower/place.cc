@@ -210,7 +210,7 @@ std::optional<Target> Body::target(ExprId id) {
   if (!property && !check_writable(id)) return std::nullopt;
   if (!types().is_scalar(note.type) && sema_.holds_input(note.type)) {
     sema_.error(DiagnosticCode::kAssignToInput, tree_[id].span,
-                "`" + sema_.type_text(note.type) + "` has inputs (AT %I*) among its members",
+                "`" + sema_.report.type_text(note.type) + "` has inputs (AT %I*) among its members",
                 "assign the other members one by one");
     return std::nullopt;
   }

@@ -98,9 +98,9 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
   const bool pointer = types().is_reference(note.type) && types()[note.type].base == reference.base;
   if (pointer) return natural(id).value;
   if (note.type == reference.base || types().is_a(note.type, reference.base)) return handle_of(id);
-  sema_.error(
-      DiagnosticCode::kTypeMismatch, tree_[id].span,
-      "`" + sema_.type_text(target) + "` cannot refer to a `" + sema_.type_text(note.type) + "`");
+  sema_.error(DiagnosticCode::kTypeMismatch, tree_[id].span,
+              "`" + sema_.report.type_text(target) + "` cannot refer to a `" +
+                  sema_.report.type_text(note.type) + "`");
   return zero(target);
 }
 
@@ -108,10 +108,10 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
 ir::ValueId Body::interface_value(ExprId id, ir::TypeId target) {
   const ir::TypeId type = sema_.infer(id).type;
   if (types().is_a(type, types()[target].base)) return handle_of(id);
-  sema_.error(
-      DiagnosticCode::kTypeMismatch, tree_[id].span,
-      "`" + sema_.type_text(type) + "` does not implement `" + sema_.type_text(target) + "`",
-      "declare it with IMPLEMENTS " + sema_.type_text(target));
+  sema_.error(DiagnosticCode::kTypeMismatch, tree_[id].span,
+              "`" + sema_.report.type_text(type) + "` does not implement `" +
+                  sema_.report.type_text(target) + "`",
+              "declare it with IMPLEMENTS " + sema_.report.type_text(target));
   return zero(target);
 }
 
@@ -121,7 +121,8 @@ void Body::bind_reference(const Stmt& stmt) {
   if (!note.type.valid()) return;
   if (!note.reference.valid()) {
     sema_.error(DiagnosticCode::kBadReference, tree_[stmt.target].span,
-                "`" + sema_.type_text(note.type) + "` is not a REFERENCE TO", "assign with `:=`");
+                "`" + sema_.report.type_text(note.type) + "` is not a REFERENCE TO",
+                "assign with `:=`");
     return;
   }
   const ir::Place where = raw_place(stmt.target);
@@ -224,7 +225,7 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
     }
     if (codesys && bytes != 0) {
       sema_.error(DiagnosticCode::kBadReference, span,
-                  "an address does not fit into `" + sema_.type_text(to) + "`",
+                  "an address does not fit into `" + sema_.report.type_text(to) + "`",
                   "use DWORD or LWORD");
       return zero(to);
     }
@@ -237,9 +238,9 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
       return build_.unflat(machine_convert(from.value, scalar(from.type), ir::Scalar::kU32));
     }
   }
-  sema_.error(
-      DiagnosticCode::kTypeMismatch, span,
-      "`" + sema_.type_text(from.type) + "` does not go with `" + sema_.type_text(to) + "`");
+  sema_.error(DiagnosticCode::kTypeMismatch, span,
+              "`" + sema_.report.type_text(from.type) + "` does not go with `" +
+                  sema_.report.type_text(to) + "`");
   return zero(to);
 }
 

@@ -91,7 +91,7 @@ void Body::split(const Expr& call, const stdlib::FunctionRow& row) {
     ir::TypeId type = targets[i]->type;
     if (!holds_part(types(), type, part)) {
       sema_.error(DiagnosticCode::kWrongArgument, tree_[args[i]].span,
-                  "`" + sema_.type_text(type) + "` cannot hold this part",
+                  "`" + sema_.report.type_text(type) + "` cannot hold this part",
                   "use a variable of type INT or UINT");
       continue;
     }

@@ -64,7 +64,8 @@ ir::ValueId Body::condition(ExprId expr) {
   const Note& note = sema_.infer(expr);
   if (note.type.valid() && !traits_of(types(), note.type).boolean) {
     sema_.error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
-                "the condition is `" + sema_.type_text(note.type) + "`", "compare it: `x <> 0`");
+                "the condition is `" + sema_.report.type_text(note.type) + "`",
+                "compare it: `x <> 0`");
     return zero(elementary(ir::Kind::kBool));
   }
   return value(expr, elementary(ir::Kind::kBool));

@@ -80,7 +80,7 @@ bool Body::is_message(ExprId message) {
   const Note& note = sema_.infer(message);
   if (!note.type.valid() || is_string(types(), note.type)) return note.type.valid();
   sema_.error(DiagnosticCode::kWrongArgument, tree_[message].span,
-              "the message is `" + sema_.type_text(note.type) + "`",
+              "the message is `" + sema_.report.type_text(note.type) + "`",
               "the last argument is the text that a failure shows: 'pump is off'");
   return false;
 }
@@ -95,7 +95,7 @@ bool Body::is_time_ahead(ExprId duration) {
   if (time && !back) return true;
   sema_.error(DiagnosticCode::kWrongArgument, tree_[duration].span,
               back ? std::string("time does not go back")
-                   : "the duration is `" + sema_.type_text(note.type) + "`",
+                   : "the duration is `" + sema_.report.type_text(note.type) + "`",
               back ? "every test begins anew at time 0; advance by what is missing"
                    : "write a TIME: ADVANCE_TIME(T#5s)");
   return false;
@@ -128,7 +128,7 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
     holds = compare_places(relation.op, a, b);
   } else if (!types().is_scalar(common.type)) {
     sema_.error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
-                "`" + sema_.type_text(common.type) + "` cannot be compared as a whole",
+                "`" + sema_.report.type_text(common.type) + "` cannot be compared as a whole",
                 "compare its members or elements");
     return;
   } else {

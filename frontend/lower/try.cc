@@ -131,7 +131,7 @@ void Body::catch_variable(const Stmt& stmt) {
                      (traits.integer || traits.bits || traits.enumeration);
   if (!wide_enough) {
     sema_.error(DiagnosticCode::kTypeMismatch, tree_[stmt.target].span,
-                "the variable of __CATCH is `" + sema_.type_text(variable->type) + "`",
+                "the variable of __CATCH is `" + sema_.report.type_text(variable->type) + "`",
                 "declare it as ExceptionCode or as an integer");
     return;
   }

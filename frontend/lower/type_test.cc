@@ -12,12 +12,13 @@ std::optional<ir::ValueId> Body::object_handle(ExprId id) {
   if (types().is_instance(note.type)) return handle_of(id);
   const bool reference = types().is_reference(note.type);
   const ir::TypeId target = reference ? types()[note.type].base : ir::TypeId();
-  if (sema_.is_interface(note.type) || (reference && types().is_instance(target))) {
+  if (is_interface(types(), note.type) || (reference && types().is_instance(target))) {
     return natural(id).value;
   }
-  sema_.error(DiagnosticCode::kBadTypeTest, tree_[id].span,
-              "`" + sema_.type_text(note.type) + "` is no instance of a block and refers to none",
-              "use an instance, a reference to one, or a variable of an interface");
+  sema_.error(
+      DiagnosticCode::kBadTypeTest, tree_[id].span,
+      "`" + sema_.report.type_text(note.type) + "` is no instance of a block and refers to none",
+      "use an instance, a reference to one, or a variable of an interface");
   return std::nullopt;
 }
 
@@ -29,7 +30,7 @@ Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
     sema_.infer(right);
     return result;
   }
-  const bool bound = note.reference.valid() && !sema_.is_interface(note.type);
+  const bool bound = note.reference.valid() && !is_interface(types(), note.type);
   const ir::TypeId reference = bound ? note.reference : note.type;
   const ir::TypeId wanted =
       types().is_reference(reference) ? types()[reference].base : ir::TypeId();
@@ -37,7 +38,7 @@ Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
                     (types().is_instance(wanted) || types()[wanted].kind == ir::Kind::kInterface);
   if (!good) {
     sema_.error(DiagnosticCode::kBadTypeTest, tree_[left].span,
-                "`" + sema_.type_text(reference) + "` cannot take what a type test finds",
+                "`" + sema_.report.type_text(reference) + "` cannot take what a type test finds",
                 "use a variable of an interface, or a reference to a function block or class");
     return result;
   }

@@ -20,9 +20,9 @@ void warn_of_half_times(Sema& sema, ir::TypeId from, ir::TypeId to, base::Source
   uint32_t bytes = ir::scalar_size(types.scalar(target));
   if (bytes != 2 && bytes != 4) return;
   sema.warning(DiagnosticCode::kImplicitNarrowing, span,
-               "`" + sema.type_text(source) + "` is 64 bits of nanoseconds; a `" +
-                   sema.type_text(target) + "` behind its address is a part of them",
-               "convert the value, for example with TO_" + sema.type_text(target));
+               "`" + sema.report.type_text(source) + "` is 64 bits of nanoseconds; a `" +
+                   sema.report.type_text(target) + "` behind its address is a part of them",
+               "convert the value, for example with TO_" + sema.report.type_text(target));
 }
 
 bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
@@ -72,7 +72,7 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   if (!note.type.valid() || !target.valid()) return zero(target);
   if (types()[target].kind == ir::Kind::kReferenceTo) return reference_value(id, target);
   if (note.constant && types().is_reference(target)) return constant_reference(id);
-  if (sema_.is_interface(target) && types().is_instance(note.type)) {
+  if (is_interface(types(), target) && types().is_instance(note.type)) {
     return interface_value(id, target);
   }
   if (is_known(note)) {
@@ -82,9 +82,9 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   }
   ir::TypeId own = own_type(note, target);
   if (!types().is_scalar(own)) {
-    sema_.error(
-        DiagnosticCode::kTypeMismatch, expr.span,
-        "`" + sema_.type_text(own) + "` does not go with `" + sema_.type_text(target) + "`");
+    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
+                "`" + sema_.report.type_text(own) + "` does not go with `" +
+                    sema_.report.type_text(target) + "`");
     return zero(target);
   }
   warn_of_half_times(sema_, note.type, target, expr.span);

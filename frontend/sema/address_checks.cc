@@ -72,7 +72,7 @@ void SharedAddresses::check() const {
   check_inputs_in_tests(all);
   check_instances();
   const std::vector<Located>& configured = sema_.addresses.configured;
-  if (configured.empty() || sema_.diagnostics_.has_errors()) return;
+  if (configured.empty() || sema_.report.has_errors()) return;
   all.insert(all.end(), configured.begin(), configured.end());
   std::erase_if(all, [](const Located& one) { return !keeps_value(one.address.area); });
   std::stable_sort(all.begin(), all.end(), [](const Located& a, const Located& b) {
@@ -105,7 +105,7 @@ void SharedAddresses::check() const {
 
 // A fixed %M or %Q of a block is one place for all of its instances, but each has a variable.
 void SharedAddresses::check_instances() const {
-  if (sema_.diagnostics_.has_errors() || sema_.for_tests()) return;  // a TEST has one of its own
+  if (sema_.report.has_errors() || sema_.for_tests()) return;  // a TEST has one of its own
   const auto places = [&](const PouInfo& pou, VarId id) {
     const Variable& variable = sema_.declared.variables[id.index];
     const VarDecl* decl = variable.decl;

@@ -25,7 +25,8 @@ std::optional<int64_t> Sema::bound_of(const Expr& expr, bool upper) {
   ir::TypeId type = infer(array).type;
   if (!type.valid()) return std::nullopt;
   if (program.types[type].kind != ir::Kind::kArray) {
-    error(DiagnosticCode::kNotArray, tree[array].span, "`" + type_text(type) + "` is not an array");
+    error(DiagnosticCode::kNotArray, tree[array].span,
+          "`" + report.type_text(type) + "` is not an array");
     return std::nullopt;
   }
   ExprId number = tree.args[expr.list.first + 1].value;
@@ -34,7 +35,7 @@ std::optional<int64_t> Sema::bound_of(const Expr& expr, bool upper) {
   const std::vector<ir::Dimension>& dims = program.types[type].dims;
   if (*dimension < 1 || *dimension > static_cast<int64_t>(dims.size())) {
     error(DiagnosticCode::kIndexOutOfBounds, tree[number].span,
-          "`" + type_text(type) + "` has " + std::to_string(dims.size()) + " dimensions");
+          "`" + report.type_text(type) + "` has " + std::to_string(dims.size()) + " dimensions");
     return std::nullopt;
   }
   const ir::Dimension& found = dims[static_cast<size_t>(*dimension) - 1];

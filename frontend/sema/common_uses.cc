@@ -128,7 +128,7 @@ ResourceUses CommonUses::of_resource() {
     if (!added) return entry->second;
     const bool plain = !variable.decl->has_address &&
                        ir::plain_signature(program.types, natural, variable.type).has_value();
-    entry->second = {std::string(variable.name.text), sema_.type_text(variable.type),
+    entry->second = {std::string(variable.name.text), sema_.report.type_text(variable.type),
                      variable.name.span, plain};
     return entry->second;
   };

@@ -60,7 +60,7 @@ class Containment {
       if (!types_.has_members(inner) || marks_[inner.index] == Mark::kBlack) continue;
       if (marks_[inner.index] == Mark::kGrey) {
         report(DiagnosticCode::kRecursiveType, inner,
-               "contains an instance of itself, in `" + sema_.type_text(top.type) + "." +
+               "contains an instance of itself, in `" + sema_.report.type_text(top.type) + "." +
                    member.name + "`",
                "break the circle");
         continue;
@@ -119,7 +119,7 @@ class Containment {
     for (const TypeDecl& decl : sema_.tree.types) {
       if (ir::same_name(decl.name.text, types_[type].name)) span = decl.name.span;
     }
-    sema_.error(code, span, "`" + sema_.type_text(type) + "` " + what, help);
+    sema_.error(code, span, "`" + sema_.report.type_text(type) + "` " + what, help);
   }
 
   Sema& sema_;

@@ -373,7 +373,7 @@ void Sema::report_unused() {
            program.types.is_scalar(variable.type) && !program.types.is_reference(variable.type) &&
            !program.types[variable.type].init.valid();
   };
-  if (diagnostics_.has_hard_errors()) return;
+  if (report.has_hard_errors()) return;
   report_unassigned_results(*this);
   for (const Variable& variable : declared.variables) {
     bool private_section = variable.section == VarSection::kLocal ||

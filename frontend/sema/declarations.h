@@ -19,6 +19,9 @@ struct Declarations {
   // The instance type's POU, or null.
   const PouInfo* pou_of(ir::TypeId instance) const;
   const PouInfo* find_pou(std::string_view qualified) const;
+  // The block or interface around a POU, which may be one itself; kNoPou: none.
+  uint32_t block_of(uint32_t pou) const;
+  uint32_t block_of(const PouScope& scope) const { return block_of(scope.number()); }
   const StructureField* find_field(ir::TypeId structure, std::string_view name) const;
   // The number of a member that is no BIT; -1: there is none.
   int32_t find_member(ir::TypeId structure, std::string_view name) const;

@@ -13,6 +13,13 @@ const PouInfo* Declarations::find_pou(std::string_view qualified) const {
   return found == pou_names.end() ? nullptr : &pous[found->second];
 }
 
+uint32_t Declarations::block_of(uint32_t pou) const {
+  if (pou == kNoPou) return kNoPou;
+  const PouInfo& info = pous[pou];
+  if (info.owner != kNoPou) return info.owner;
+  return info.self.valid() ? pou : kNoPou;
+}
+
 const StructureField* Declarations::find_field(ir::TypeId structure, std::string_view name) const {
   const auto table = structures.find(structure);
   if (table == structures.end()) return nullptr;

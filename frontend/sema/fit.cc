@@ -31,9 +31,9 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
   Traits to = traits_of(types, target);
   auto mismatch = [&]() -> std::optional<uint64_t> {
     std::string what =
-        value.flex == Flex::kNone ? "`" + type_text(value.type) + "`" : value_text(value);
+        value.flex == Flex::kNone ? "`" + report.type_text(value.type) + "`" : value_text(value);
     error(DiagnosticCode::kTypeMismatch, span,
-          what + " does not go with `" + type_text(target) + "`");
+          what + " does not go with `" + report.type_text(target) + "`");
     return std::nullopt;
   };
   if (!types.is_scalar(target)) return mismatch();
@@ -67,7 +67,7 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
                     !std::isfinite(static_cast<float>(real));
     if (!overflow) return real_bits(scalar, real);
     error(DiagnosticCode::kLiteralOutOfRange, span,
-          value_text(value) + " is too large for `" + type_text(target) + "`");
+          value_text(value) + " is too large for `" + report.type_text(target) + "`");
     return std::nullopt;
   }
   Wide integer = value.integer;
@@ -83,7 +83,7 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
   if (integer >= limits.low && integer <= limits.high) return static_cast<uint64_t>(integer);
   if (auto bits = same_bits(value, integer, target, span)) return bits;
   error(DiagnosticCode::kLiteralOutOfRange, span,
-        wide_text(integer) + " does not fit into `" + type_text(target) + "`",
+        wide_text(integer) + " does not fit into `" + report.type_text(target) + "`",
         "it holds " + wide_text(limits.low) + ".." + wide_text(limits.high));
   return std::nullopt;
 }
@@ -104,7 +104,8 @@ std::optional<uint64_t> Sema::same_bits(const Constant& value, Wide integer, ir:
   if (!into_signed && !into_bits) return std::nullopt;
   Wide wrapped = wrap_to(scalar, integer);
   warning(DiagnosticCode::kSignChanged, span,
-          wide_text(integer) + " becomes " + wide_text(wrapped) + " in `" + type_text(target) + "`",
+          wide_text(integer) + " becomes " + wide_text(wrapped) + " in `" +
+              report.type_text(target) + "`",
           into_bits ? "write the bits, for example with 16#" : "write the number");
   return static_cast<uint64_t>(wrapped);
 }
@@ -117,7 +118,7 @@ std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId targ
               (program.types[value.type].kind == ir::Kind::kWstring) == wide;
   if (!text) {
     error(DiagnosticCode::kTypeMismatch, span,
-          value_text(value) + " does not go with `" + type_text(target) + "`",
+          value_text(value) + " does not go with `" + report.type_text(target) + "`",
           wide ? "write WSTRING literals in double quotes"
                : "write STRING literals in single quotes");
     return std::nullopt;
@@ -126,7 +127,7 @@ std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId targ
   if (value.text.size() <= room) return value.text;
   warning(DiagnosticCode::kStringTruncated, span,
           std::to_string(value.text.size() / (wide ? 2 : 1)) + " characters for `" +
-              type_text(target) + "`; the rest is cut off");
+              report.type_text(target) + "`; the rest is cut off");
   return value.text.substr(0, room);
 }
 

@@ -65,7 +65,7 @@ std::optional<Constant> Folder::part(ExprId id) {
   }
   if (!types.is_scalar(part->type)) {
     sema_.error(DiagnosticCode::kBadInitializer, sema_.tree[id].span,
-                "this is a whole `" + sema_.type_text(part->type) + "`",
+                "this is a whole `" + sema_.report.type_text(part->type) + "`",
                 "name the member or element that is meant");
     return std::nullopt;
   }

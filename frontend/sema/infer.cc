@@ -212,7 +212,7 @@ Note Sema::variable_note(VarId id) {
 // `name`, or `A.name` where A is a namespace.
 Note Sema::infer_enum_name(const Expr& expr) {
   const bool plain = expr.kind == ExprKind::kName;
-  const uint32_t own = plain ? objects.block_of(scope_.number()) : kNoPou;
+  const uint32_t own = plain ? declared.block_of(scope_) : kNoPou;
   Objects::Found code;
   if (own != kNoPou) code = objects.find_code(own, expr.name.text);
   if (code.code.is_property()) return objects.infer_property(expr.name, code);
@@ -289,7 +289,7 @@ Note Sema::infer_literal_of(std::string_view name, base::SourceSpan span, const 
     return note;
   }
   error(DiagnosticCode::kNotEnumeration, wanted.span,
-        "`" + type_text(use->type) + "` has no literal `" + std::string(wanted.text) + "`",
+        "`" + report.type_text(use->type) + "` has no literal `" + std::string(wanted.text) + "`",
         nearest.fix());
   return {};
 }
@@ -300,7 +300,7 @@ Note Sema::infer_bit(const Expr& expr) {
   Traits traits = traits_of(program.types, operand.type);
   if (!traits.bits && !traits.integer) {
     error(DiagnosticCode::kBadOperand, expr.span,
-          "`" + type_text(operand.type) + "` has no bits to access");
+          "`" + report.type_text(operand.type) + "` has no bits to access");
     return {};
   }
   if (!check_part(operand.type, expr.number, expr.bit_size, expr.span)) return {};
@@ -321,7 +321,7 @@ bool Sema::check_part(ir::TypeId whole, uint32_t number, uint8_t size, base::Sou
   uint32_t width = ir::scalar_size(program.types.scalar(whole)) * 8;
   if ((uint64_t{number} + 1) * size <= width) return true;
   error(DiagnosticCode::kBitOutOfRange, span,
-        "number " + std::to_string(number) + " in `" + type_text(whole) + "`",
+        "number " + std::to_string(number) + " in `" + report.type_text(whole) + "`",
         "the highest is " + std::to_string(width / size - 1));
   return false;
 }
@@ -363,7 +363,7 @@ Note Sema::infer_unary(const Expr& expr) {
   if (good) return note;
   error(DiagnosticCode::kBadOperand, expr.span,
         std::string(expr.unary == UnaryOp::kNot ? "NOT" : "a sign") + " is not defined for `" +
-            type_text(operand.type) + "`");
+            report.type_text(operand.type) + "`");
   return {};
 }
 

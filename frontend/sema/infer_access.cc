@@ -43,14 +43,16 @@ Note Sema::infer_member(const Expr& expr) {
     NearestName nearest(expr.name.text);
     for (const ir::Member& other : type.members) nearest.offer(other.name);
     error(DiagnosticCode::kUnknownMember, expr.name.span,
-          "`" + type_text(operand.type) + "` has no member " + quoted(expr.name), nearest.fix());
+          "`" + report.type_text(operand.type) + "` has no member " + quoted(expr.name),
+          nearest.fix());
     return {};
   }
   const uint32_t owner = objects.receiver(expr.operand);
   if (owner != kNoPou) return objects.infer_member(expr, owner, note);
   const bool block = program.types.is_reference(operand.type) &&
                      declared.pou_of(program.types[operand.type].base) != nullptr;
-  error(DiagnosticCode::kNoMembers, expr.span, "`" + type_text(operand.type) + "` has no members",
+  error(DiagnosticCode::kNoMembers, expr.span,
+        "`" + report.type_text(operand.type) + "` has no members",
         block                      ? "write `^.` to reach what it refers to"
         : namespaces.is_path(head) ? "the variable hides the namespace of that name"
                                    : "");
@@ -110,12 +112,13 @@ Note Sema::infer_index(const Expr& expr) {
   if (is_string(program.types, note.type)) return infer_character(expr, note);
   const ir::Type& array = program.types[note.type];
   if (array.kind != ir::Kind::kArray) {
-    error(DiagnosticCode::kNotArray, expr.span, "`" + type_text(note.type) + "` is not an array");
+    error(DiagnosticCode::kNotArray, expr.span,
+          "`" + report.type_text(note.type) + "` is not an array");
     return {};
   }
   if (array.dims.size() != expr.list.count) {
     error(DiagnosticCode::kWrongIndexCount, expr.span,
-          std::to_string(expr.list.count) + " indices for `" + type_text(note.type) + "`",
+          std::to_string(expr.list.count) + " indices for `" + report.type_text(note.type) + "`",
           "give " + std::to_string(array.dims.size()));
     return {};
   }
@@ -130,7 +133,7 @@ Note Sema::infer_index(const Expr& expr) {
 Note Sema::infer_character(const Expr& expr, Note note) {
   if (expr.list.count != 1) {
     error(DiagnosticCode::kWrongIndexCount, expr.span,
-          std::to_string(expr.list.count) + " indices for `" + type_text(note.type) + "`",
+          std::to_string(expr.list.count) + " indices for `" + report.type_text(note.type) + "`",
           "give 1");
     return {};
   }
@@ -157,7 +160,7 @@ void Sema::check_index_list(const Expr& expr, const ir::Type& array) {
     bool enumeration = is_enum(program.types, note.type);
     if (!traits.integer && !traits.bits && !enumeration) {
       error(DiagnosticCode::kIndexNotInteger, tree[index].span,
-            "the index is `" + type_text(note.type) + "`");
+            "the index is `" + report.type_text(note.type) + "`");
       continue;
     }
     if (!note.constant) continue;

@@ -20,8 +20,7 @@ Callee Sema::callee(const Expr& call) {
   if (head.kind == ExprKind::kName) {
     VarId id = find_variable(head);
     if (!id.valid() && !head.global) {
-      if (auto method = objects.method_of(objects.block_of(scope_.number()), head.name))
-        return *method;
+      if (auto method = objects.method_of(declared.block_of(scope_), head.name)) return *method;
     }
     if (!id.valid()) id = program_variable(head.name.text, true);
     if (!id.valid()) {
@@ -48,7 +47,7 @@ Callee Sema::callee(const Expr& call) {
     bool chart = decl != nullptr && decl->implied;
     error(DiagnosticCode::kNotCallable, head.span,
           chart ? quoted(head.name) + " belongs to the chart, whose steps alone run its actions"
-                : "`" + type_text(note.type) + "` cannot be called",
+                : "`" + report.type_text(note.type) + "` cannot be called",
           chart              ? "put what several places call into a function or function block"
           : call.instruction ? "write LD in front of it to load it"
                              : "");

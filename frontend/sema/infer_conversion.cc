@@ -50,7 +50,7 @@ Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
   bool text = is_string(program.types, note.type);
   if (!program.types.is_scalar(note.type) && !text) {
     error(DiagnosticCode::kWrongArgument, expr.span,
-          "`" + type_text(note.type) + "` cannot be converted");
+          "`" + report.type_text(note.type) + "` cannot be converted");
     return {};
   }
   ir::Kind from = text ? program.types[note.type].kind : program.types.root_kind(note.type);
@@ -110,12 +110,12 @@ bool Sema::check_conversion(const Expr& expr, const Conversion& conversion, ir::
   if (wanted != nullptr || mismatch) {
     error(DiagnosticCode::kWrongArgument, expr.span,
           name + " takes " + (wanted != nullptr ? wanted : kind_text(conversion.from)) +
-              ", the argument is `" + type_text(argument.type) + "`");
+              ", the argument is `" + report.type_text(argument.type) + "`");
     return false;
   }
   if (character || literal || is_convertible(from, conversion.to)) return true;
   error(DiagnosticCode::kNoConversion, expr.span,
-        "there is no conversion of `" + type_text(argument.type) + "` to `" +
+        "there is no conversion of `" + report.type_text(argument.type) + "` to `" +
             kind_text(conversion.to) + "`");
   return false;
 }

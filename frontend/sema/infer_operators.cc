@@ -74,7 +74,8 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
     note.flex = a.flex == Flex::kNull && b.flex == Flex::kNull ? Flex::kNull : Flex::kNone;
     if (note.type.valid()) return note;
     error(DiagnosticCode::kOperandsDiffer, span,
-          "`" + type_text(a.type) + "` and `" + type_text(b.type) + "` have no common type");
+          "`" + report.type_text(a.type) + "` and `" + report.type_text(b.type) +
+              "` have no common type");
     return {};
   }
   if (is_flexible_number(a) && is_flexible_number(b)) {
@@ -125,7 +126,8 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
     if (note.type.valid()) return note;
   }
   error(DiagnosticCode::kOperandsDiffer, span,
-        "`" + type_text(a.type) + "` and `" + type_text(b.type) + "` have no common type",
+        "`" + report.type_text(a.type) + "` and `" + report.type_text(b.type) +
+            "` have no common type",
         "convert one of them explicitly");
   return {};
 }
@@ -184,9 +186,10 @@ Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base:
     if (wide && is_small(*this, note)) note.width = Width::kWide;
     return note;
   }
-  error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + type_text(note.type) + "`",
-        lazy ? "both operands have to be BOOL" : "use BOOL or bit strings");
+  error(
+      DiagnosticCode::kBadOperand, span,
+      std::string(operator_text(op)) + " is not defined for `" + report.type_text(note.type) + "`",
+      lazy ? "both operands have to be BOOL" : "use BOOL or bit strings");
   return {};
 }
 
@@ -197,7 +200,8 @@ Note Sema::infer_comparison(BinaryOp op, const Note& left, const Note& right,
   bool scalar = program.types.is_scalar(note.type);
   if (!scalar && !is_string(program.types, note.type)) {
     error(DiagnosticCode::kBadOperand, span,
-          std::string(operator_text(op)) + " is not defined for `" + type_text(note.type) + "`",
+          std::string(operator_text(op)) + " is not defined for `" + report.type_text(note.type) +
+              "`",
           "compare the elements one by one");
     return {};
   }
@@ -241,8 +245,8 @@ Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
     }
   }
   error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + type_text(left.type) +
-            "` and `" + type_text(right.type) + "`");
+        std::string(operator_text(op)) + " is not defined for `" + report.type_text(left.type) +
+            "` and `" + report.type_text(right.type) + "`");
   return {};
 }
 
@@ -281,8 +285,8 @@ Note Sema::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& righ
     return note;
   }
   error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + type_text(left.type) +
-            "` and `" + type_text(right.type) + "`");
+        std::string(operator_text(op)) + " is not defined for `" + report.type_text(left.type) +
+            "` and `" + report.type_text(right.type) + "`");
   return {};
 }
 

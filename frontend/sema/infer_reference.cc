@@ -54,7 +54,8 @@ TypeUse Sema::resolve_reference(const Spec& spec) {
   if (!target.valid()) target = resolve_type(spec.element).type;
   if (!target.valid()) return {};
   if (program.types[target].kind == ir::Kind::kReferenceTo) {
-    error(DiagnosticCode::kBadReference, spec.span, "a reference to a `" + type_text(target) + "`",
+    error(DiagnosticCode::kBadReference, spec.span,
+          "a reference to a `" + report.type_text(target) + "`",
           "REFERENCE TO stands for its target; refer to that");
     return {};
   }
@@ -66,7 +67,7 @@ Note Sema::infer_deref(const Expr& expr) {
   if (!operand.type.valid()) return {};
   if (!program.types.is_reference(operand.type) || operand.flex == Flex::kNull) {
     error(DiagnosticCode::kNotReference, expr.span,
-          "`" + type_text(operand.type) + "` is not a reference");
+          "`" + report.type_text(operand.type) + "` is not a reference");
     return {};
   }
   Note note;
@@ -89,7 +90,7 @@ Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
   const Traits traits = traits_of(program.types, index.type);
   if (!traits.integer && !traits.bits) {
     error(DiagnosticCode::kIndexNotInteger, tree[at].span,
-          "the index is `" + type_text(index.type) + "`");
+          "the index is `" + report.type_text(index.type) + "`");
     return {};
   }
   note.type = program.types[operand.type].base;
@@ -147,7 +148,7 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
     default:
       if (!operand.reference.valid() && !program.types.is_reference(operand.type)) {
         error(DiagnosticCode::kBadReference, expr.span,
-              "`" + type_text(operand.type) + "` is not a reference");
+              "`" + report.type_text(operand.type) + "` is not a reference");
         return {};
       }
       note.type = program.types.elementary(ir::Kind::kBool);
@@ -197,8 +198,8 @@ Note Sema::infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& r
     return note;
   }
   error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + type_text(left.type) +
-            "` and `" + type_text(right.type) + "`");
+        std::string(operator_text(op)) + " is not defined for `" + report.type_text(left.type) +
+            "` and `" + report.type_text(right.type) + "`");
   return {};
 }
 

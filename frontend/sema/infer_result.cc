@@ -38,7 +38,8 @@ Note Sema::infer_result(const Expr& expr) {
   if (!best.type.valid()) return {};
   if (types.is_instance(best.type)) {
     error(DiagnosticCode::kNotAValue, expr.span,
-          "an instance of `" + type_text(best.type) + "` is no value", "load one of its variables");
+          "an instance of `" + report.type_text(best.type) + "` is no value",
+          "load one of its variables");
     return {};
   }
   note.type = without_range(types, best.type);
@@ -64,8 +65,8 @@ bool Sema::check_result(const Stmt& stmt) {
     return true;
   }
   error(DiagnosticCode::kResultsDiffer, stmt.span,
-        "the current result is `" + type_text(given) + "` here and `" + type_text(wanted) +
-            "` on another way to the same label",
+        "the current result is `" + report.type_text(given) + "` here and `" +
+            report.type_text(wanted) + "` on another way to the same label",
         "convert one of them, or load the operand after the label");
   return false;
 }

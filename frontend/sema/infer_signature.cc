@@ -9,7 +9,7 @@ Note Sema::infer_by_signature(const stdlib::FunctionRow& row, const std::vector<
     if (takes(stdlib::operand_type(row, i), note)) continue;
     error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
           "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " is `" +
-              type_text(note.type) + "`",
+              report.type_text(note.type) + "`",
           "it takes " + std::string(row.signature));
     return {};
   }

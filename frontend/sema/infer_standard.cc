@@ -106,7 +106,7 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
   };
   auto refuse = [&](const Note& note) {
     error(DiagnosticCode::kWrongArgument, expr.span,
-          std::string(row.name) + " is not defined for `" + type_text(note.type) + "`",
+          std::string(row.name) + " is not defined for `" + report.type_text(note.type) + "`",
           "it takes " + std::string(row.signature));
     return Note();
   };
@@ -229,7 +229,7 @@ Note Sema::infer_string_function(const std::vector<ExprId>& args, const stdlib::
     if (!fits || (string && i > 0 && i < strings && is_wide != wide)) {
       error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
             "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " is `" +
-                type_text(note.type) + "`",
+                report.type_text(note.type) + "`",
             "it takes " + std::string(row.signature));
       return {};
     }

@@ -29,7 +29,7 @@ uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interfac
   Sema::Within scope(sema_, info.number);
   ir::TypeId type = sema_.resolve_type(spec).type;
   if (!type.valid()) return kNoPou;
-  if (sema_.is_interface(type)) type = sema_.program.types[type].base;
+  if (is_interface(sema_.program.types, type)) type = sema_.program.types[type].base;
   const auto found = sema_.declared.pou_by_type.find(type);
   const PouDecl* decl =
       found == sema_.declared.pou_by_type.end() ? nullptr : sema_.declared.pous[found->second].decl;
@@ -37,7 +37,7 @@ uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interfac
       decl != nullptr && (interface ? decl->kind == PouKind::kInterface : is_block(decl->kind));
   if (good) return found->second;
   sema_.error(DiagnosticCode::kBadBase, sema_.tree[spec].span,
-              "`" + sema_.type_text(type) + "` is no " +
+              "`" + sema_.report.type_text(type) + "` is no " +
                   (interface ? "interface" : "function block or class"),
               interface         ? "extend it, or declare an INTERFACE"
               : decl != nullptr ? "write IMPLEMENTS"

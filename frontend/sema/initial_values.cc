@@ -89,7 +89,7 @@ ir::ConstId InitialBuilder::whole(ExprId id, ir::TypeId type) {
   }
   bool is_array = sema_.program.types[type].kind == ir::Kind::kArray;
   sema_.error(DiagnosticCode::kBadInitializer, expr.span,
-              "this is no initial value of `" + sema_.type_text(type) + "`",
+              "this is no initial value of `" + sema_.report.type_text(type) + "`",
               is_array ? "write [value, value, 3(value)]" : "write (member := value, ...)");
   return {};
 }
@@ -143,9 +143,9 @@ bool InitialBuilder::item(ExprId id, ArrayList& list) {
   if (!item_parts(id, rounds, values)) return false;
   uint64_t width = values.empty() ? 1 : values.size();  // n(): elements keep their default
   if (rounds > list.total || list.at + rounds * width > list.total) {
-    sema_.error(
-        DiagnosticCode::kTooManyInitializers, sema_.tree[id].span,
-        "`" + sema_.type_text(list.type) + "` has " + std::to_string(list.total) + " elements");
+    sema_.error(DiagnosticCode::kTooManyInitializers, sema_.tree[id].span,
+                "`" + sema_.report.type_text(list.type) + "` has " + std::to_string(list.total) +
+                    " elements");
     return false;
   }
   if (values.empty()) list.at += rounds;
@@ -225,14 +225,14 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
     if (slot.fixed) {
       sema_.error(DiagnosticCode::kAssignToConstant, arg.span,
                   "`" + std::string(arg.name.text) + "` is a constant of `" +
-                      sema_.type_text(type) + "`: every instance has the same value",
+                      sema_.report.type_text(type) + "`: every instance has the same value",
                   "declare it in VAR or VAR_INPUT to set it for each instance");
       return {};
     }
     if (slot.member < 0 || arg.output || !arg.value.valid()) {
       sema_.error(DiagnosticCode::kUnknownMember, arg.span,
-                  "`" + sema_.type_text(type) + "` has no member `" + std::string(arg.name.text) +
-                      "` to initialise");
+                  "`" + sema_.report.type_text(type) + "` has no member `" +
+                      std::string(arg.name.text) + "` to initialise");
       return {};
     }
     if (!slot.type.valid()) return {};

@@ -118,9 +118,9 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
     member = sema_.declared.find_member(path.type, expr.name.text);
   }
   if (member < 0) {
-    sema_.error(
-        DiagnosticCode::kUnknownMember, expr.name.span,
-        "`" + sema_.type_text(path.type) + "` has no member `" + std::string(expr.name.text) + "`");
+    sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
+                "`" + sema_.report.type_text(path.type) + "` has no member `" +
+                    std::string(expr.name.text) + "`");
     return false;
   }
   auto number = static_cast<uint32_t>(member);
@@ -194,9 +194,10 @@ bool InstancePaths::check_type(const VarDecl& decl, const Path& path) {
   if (!use.type.valid()) return false;
   if (path.text.empty() || use.type != path.type) {
     sema_.error(DiagnosticCode::kTypeMismatch, sema_.tree[decl.path].span,
-                path.text.empty() ? "the path ends at the resource"
-                                  : "`" + path.text + "` is `" + sema_.type_text(path.type) +
-                                        "`, declared here as `" + sema_.type_text(use.type) + "`");
+                path.text.empty()
+                    ? "the path ends at the resource"
+                    : "`" + path.text + "` is `" + sema_.report.type_text(path.type) +
+                          "`, declared here as `" + sema_.report.type_text(use.type) + "`");
     return false;
   }
   return true;
@@ -289,7 +290,7 @@ bool InstancePaths::holds_open(ir::TypeId type) {
 // Every AT %I*, %Q* has to get its address, in each instance. A VAR_CONFIG with a mistake gives
 // none, and what it meant is not to be known.
 void InstancePaths::check_open_addresses() {
-  if (sema_.diagnostics_.has_errors()) return;
+  if (sema_.report.has_errors()) return;
   Known known;
   for (const ir::LocatedPath& located : sema_.program.located) {
     known.insert(ir::fold_name(located.path));
@@ -339,7 +340,7 @@ void InstancePaths::check_members(ir::TypeId type, const std::string& prefix, ba
     if (open && !known.contains(ir::fold_name(path))) {
       sema_.error(DiagnosticCode::kOpenAddress, here, "`" + path + "` has no address yet",
                   "add VAR_CONFIG " + path + " AT " + example_address(members[i].address) + " : " +
-                      sema_.type_text(members[i].type) + "; END_VAR");
+                      sema_.report.type_text(members[i].type) + "; END_VAR");
     }
     if (inside) check_part(members[i].type, path, here, known);
   }

@@ -65,7 +65,7 @@ bool Sema::holds_instance(ir::TypeId type) const {
 // Why a variable of this type cannot be there; empty: it can. An open address (`%I*`) may leave
 // out the size.
 std::string Sema::address_problem(ir::TypeId type, const ir::DirectAddress& address, bool open) {
-  std::string is = "is `" + type_text(type) + "`";
+  std::string is = "is `" + report.type_text(type) + "`";
   bool marker = address.area == ir::DirectArea::kMarker;
   bool plain = ir::is_locatable(program.types, type) || (marker && !holds_instance(type));
   if (!plain) return is + ", which cannot have an address";

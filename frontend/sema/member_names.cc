@@ -8,7 +8,7 @@ namespace {}  // namespace
 
 // Quiet for plain names.
 bool Objects::names_method(const Expr& expr) {
-  uint32_t owner = block_of(sema_.scope_.number());
+  uint32_t owner = sema_.declared.block_of(sema_.scope_);
   if (expr.kind == ExprKind::kName && sema_.find_variable(expr).valid()) return false;
   if (expr.kind == ExprKind::kMember) {
     if (sema_.namespaces.is_scope(sema_.tree[expr.operand])) return false;

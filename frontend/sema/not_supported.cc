@@ -5,11 +5,11 @@
 namespace frontend {
 
 void Sema::report_not_supported() {
-  auto report = [this](const char* what, base::SourceSpan span) {
+  auto tell = [this](const char* what, base::SourceSpan span) {
     error(DiagnosticCode::kNotSupported, span, std::string(what) + " not supported yet");
   };
   tree.exprs.each([&](const Expr& expr) {
-    if (expr.kind == ExprKind::kType) report("types as arguments are", expr.span);
+    if (expr.kind == ExprKind::kType) tell("types as arguments are", expr.span);
   });
 }
 

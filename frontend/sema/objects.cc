@@ -55,13 +55,6 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   sema_.collect_interface(info.number);
 }
 
-uint32_t Objects::block_of(uint32_t pou) const {
-  if (pou == kNoPou) return kNoPou;
-  const PouInfo& info = sema_.declared.pous[pou];
-  if (info.owner != kNoPou) return info.owner;
-  return info.self.valid() ? pou : kNoPou;
-}
-
 VarId Objects::find_variable(uint32_t block, std::string_view name) const {
   for (; block != kNoPou; block = sema_.declared.pous[block].base) {
     const NameMap<VarId>& names = sema_.declared.pous[block].names;

@@ -31,8 +31,6 @@ class Objects {
   void check_instance(ir::TypeId type, base::SourceSpan span);
 
   // --- names (objects.cc)
-  // The block or interface around POU `pou`, which may be one itself; kNoPou: none.
-  uint32_t block_of(uint32_t pou) const;
   // A variable of the block or of its bases that code outside of its body can see.
   VarId find_variable(uint32_t block, std::string_view name) const;
   // Looks in what is called: a POU with a frame has its own parameters only.

@@ -152,7 +152,7 @@ bool Sema::bind_generic(const Match& match, const Spec& spec, NameMap<Note>& gen
   known->second.type = without_range(program.types, known->second.type);
   if (belongs(program.types, spec.name.text, known->second.type)) return true;
   error(DiagnosticCode::kBadGenericArgument, span,
-        "`" + type_text(argument.type) + "` is no " + std::string(spec.name.text));
+        "`" + report.type_text(argument.type) + "` is no " + std::string(spec.name.text));
   return false;
 }
 
@@ -163,7 +163,7 @@ bool Sema::bind_array(const Match& match, const Spec& spec, NameMap<Note>& gener
   base::SourceSpan span = tree[match.arg->value].span;
   if (array.kind != ir::Kind::kArray || array.dims.size() != spec.dims.size()) {
     error(DiagnosticCode::kBadGenericArgument, span,
-          "`" + type_text(argument.type) + "` is no array with " +
+          "`" + report.type_text(argument.type) + "` is no array with " +
               std::to_string(spec.dims.size()) + " dimensions");
     return false;
   }
@@ -178,8 +178,8 @@ bool Sema::bind_array(const Match& match, const Spec& spec, NameMap<Note>& gener
   ir::TypeId wanted = resolve_type(spec.element).type;
   if (!wanted.valid() || wanted == array.base) return wanted.valid();
   error(DiagnosticCode::kBadGenericArgument, span,
-        "an array of `" + type_text(array.base) + "` where one of `" + type_text(wanted) +
-            "` is needed");
+        "an array of `" + report.type_text(array.base) + "` where one of `" +
+            report.type_text(wanted) + "` is needed");
   return false;
 }
 
@@ -217,7 +217,7 @@ uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir
       if (found != generic.end()) type = found->second;
     }
     key.push_back(type.index);
-    if (type.valid()) name += (name.empty() ? "" : ",") + type_text(type);
+    if (type.valid()) name += (name.empty() ? "" : ",") + report.type_text(type);
   }
   auto [known, added] = declared.instances.try_emplace({pou, std::move(key)},
                                                        static_cast<uint32_t>(declared.pous.size()));

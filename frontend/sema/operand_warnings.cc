@@ -115,7 +115,7 @@ void check_wrapped(Sema& sema, ExprId operand, std::string_view used) {
   const Note& note = sema.infer(operand);
   if (note.width != Width::kWraps || note.constant) return;
   sema.warning(DiagnosticCode::kCutBeforeUse, sema.tree[operand].span,
-               "the result is cut to `" + sema.type_text(note.type) + "` before it is " +
+               "the result is cut to `" + sema.report.type_text(note.type) + "` before it is " +
                    std::string(used),
                "convert an operand, so that the operator has the width that is needed: TO_DINT(a)");
 }

@@ -8,7 +8,7 @@
 namespace frontend {
 
 void CommonUses::check_output_tasks() {
-  if (sema_.program.tasks.size() < 2 || sema_.diagnostics_.has_errors()) return;
+  if (sema_.program.tasks.size() < 2 || sema_.report.has_errors()) return;
   const ir::Layouts natural = ir::natural_layouts(sema_.program.types);
   std::unordered_map<uint32_t, uint32_t> owner;  // output byte -> task
   for (const ir::ProgramInstance& instance : sema_.program.instances) {

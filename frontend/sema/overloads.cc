@@ -107,7 +107,7 @@ std::string Sema::signature(const PouInfo& pou) {
     const Spec& spec = tree[variable.decl->spec];
     std::string type = pou.open && spec.kind == SpecKind::kNamed ? std::string(spec.name.text)
                        : pou.open                                ? "?"
-                                                                 : type_text(resolve(id).type);
+                                  : report.type_text(resolve(id).type);
     text += (text.empty() ? "" : ",") + type;
   }
   return std::string(pou.name) + "(" + text + ")";

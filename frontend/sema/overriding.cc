@@ -144,8 +144,8 @@ bool Objects::check_signature(const PouInfo& method, const PouInfo& wanted, Diag
     if (same && a.type == b.type) continue;
     if (same || results) {
       return fail(a.name.span, (results ? "the result" : quoted(a.name)) + " is `" +
-                                   sema_.type_text(a.type) + "`, in " + whose + " it is `" +
-                                   sema_.type_text(b.type) + "`");
+                                   sema_.report.type_text(a.type) + "`, in " + whose + " it is `" +
+                                   sema_.report.type_text(b.type) + "`");
     }
     return fail(a.name.span, "parameter " + std::to_string(i + 1) + " is not that of " + whose +
                                  ", which has " + quoted(b.name) + " there");
@@ -217,7 +217,7 @@ void Objects::check_instance(ir::TypeId type, base::SourceSpan span) {
   const PouInfo* block = sema_.declared.pou_of(type);
   if (block == nullptr || !block->decl->is_abstract) return;
   sema_.error(DiagnosticCode::kAbstractInstance, span,
-              "`" + sema_.type_text(type) + "` is ABSTRACT and has no instances",
+              "`" + sema_.report.type_text(type) + "` is ABSTRACT and has no instances",
               "declare a block that extends it, or a reference");
 }
 

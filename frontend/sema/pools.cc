@@ -206,12 +206,12 @@ Note Pools::infer_delete(ExprId pointer) {
   const bool reference =
       !given.reference.valid() && types.is_reference(given.type) && given.flex != Flex::kNull;
   if (!reference || of_target(types[given.type].base).empty()) {
-    sema_.error(
-        DiagnosticCode::kBadPool, sema_.tree[pointer].span,
-        reference ? "nothing that `" + sema_.type_text(given.type) + "` leads to comes from a pool"
-                  : "__DELETE takes a variable that __NEW has given a value",
-        reference ? "put {attribute 'pool' := '16'} in front of the type's declaration"
-                  : "declare it as POINTER TO the type");
+    sema_.error(DiagnosticCode::kBadPool, sema_.tree[pointer].span,
+                reference ? "nothing that `" + sema_.report.type_text(given.type) +
+                                "` leads to comes from a pool"
+                          : "__DELETE takes a variable that __NEW has given a value",
+                reference ? "put {attribute 'pool' := '16'} in front of the type's declaration"
+                          : "declare it as POINTER TO the type");
     return {};
   }
   Note note;

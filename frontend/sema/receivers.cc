@@ -21,7 +21,7 @@ uint32_t Objects::receiver(ExprId operand) {
   if (is_super(expr)) return super(expr.span);
   const Note& note = sema_.infer(operand);
   if (!note.type.valid()) return kNoPou;
-  const bool leads = expr.kind == ExprKind::kThis || sema_.is_interface(note.type);
+  const bool leads = expr.kind == ExprKind::kThis || is_interface(sema_.program.types, note.type);
   const ir::TypeId type = leads ? sema_.program.types[note.type].base : note.type;
   const PouInfo* pou = sema_.declared.pou_of(type);
   return pou == nullptr ? kNoPou : pou->number;
@@ -29,7 +29,7 @@ uint32_t Objects::receiver(ExprId operand) {
 
 // The base of the own block; reports.
 uint32_t Objects::super(base::SourceSpan span) {
-  const uint32_t own = block_of(sema_.scope_.number());
+  const uint32_t own = sema_.declared.block_of(sema_.scope_);
   const uint32_t base = own == kNoPou ? kNoPou : sema_.declared.pous[own].base;
   if (base == kNoPou && (own == kNoPou || sema_.declared.pous[own].decl->extends.empty())) {
     sema_.error(DiagnosticCode::kBadThis, span,
@@ -41,7 +41,7 @@ uint32_t Objects::super(base::SourceSpan span) {
 }
 
 Note Objects::infer_this(const Expr& expr) {
-  const uint32_t own = block_of(sema_.scope_.number());
+  const uint32_t own = sema_.declared.block_of(sema_.scope_);
   Note note;
   if (expr.kind == ExprKind::kSuper) {
     if (super(expr.span) == kNoPou) return {};
@@ -59,7 +59,7 @@ Note Objects::infer_this(const Expr& expr) {
 }
 
 bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
-  const uint32_t own = block_of(sema_.scope_.number());
+  const uint32_t own = sema_.declared.block_of(sema_.scope_);
   if (sema_.in_test() && access != Access::kInternal) return true;
   const char* word = nullptr;
   if (access == Access::kPrivate && own != owner) word = "PRIVATE";

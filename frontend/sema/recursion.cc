@@ -46,7 +46,7 @@ void Objects::report_circle(const std::vector<uint32_t>& path) {
 
 // Depth first through what declares no depth, with a stack of its own: chains may be long.
 void Objects::check_recursion() {
-  if (sema_.diagnostics_.has_errors()) return;  // a circle may be one of the mistakes
+  if (sema_.report.has_errors()) return;  // a circle may be one of the mistakes
   enum class Mark : uint8_t { kNew, kOpen, kDone };
   std::vector<Mark> marks(sema_.declared.pous.size(), Mark::kNew);
   for (uint32_t start = 0; start < sema_.declared.pous.size(); ++start) {

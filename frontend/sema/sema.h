@@ -16,17 +16,14 @@
 #include "frontend/sema/constant.h"
 #include "frontend/sema/declarations.h"
 #include "frontend/sema/facts.h"
-#include "frontend/sema/follow_ups.h"
-#include "frontend/sema/library.h"
 #include "frontend/sema/namespaces.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/pools.h"
+#include "frontend/sema/reporter.h"
 #include "frontend/sema/start_values.h"
 #include "ir/types/layout.h"
 
 namespace frontend {
-
-using base::DiagnosticCode;
 
 enum class Purpose : uint8_t { kRun, kTest };
 
@@ -56,7 +53,6 @@ class Sema {
   // --- types (types.cc, structures.cc, containment.cc)
   TypeUse resolve_type(SpecId spec);
   std::optional<TypeUse> find_type(std::string_view qualified);
-  bool is_interface(ir::TypeId type) const;  // of an interface variable?
   void check_containment();
 
   // --- variables and members (variables.cc)
@@ -119,15 +115,19 @@ class Sema {
   // The initial value of a variable, or of a part of one, with `known` above kNo.
   std::optional<TypeUse> initial_part(ExprId expr);
 
-  // --- messages
-  void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {});
-  void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
-  // Reports an implicit conversion that may lose; false when the dialect forbids it.
-  std::string conversion_fix(ir::TypeId to) const;
-  bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span);
-  // Reports what only real sources have where the dialect is the standard's own.
-  void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {});
-  std::string type_text(ir::TypeId type) const;
+  // --- messages, from the scope that is looked at
+  void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {}) {
+    report.error(scope_, code, span, std::move(text), std::move(fix));
+  }
+  void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {}) {
+    report.warning(code, span, std::move(text), std::move(fix));
+  }
+  bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
+    return report.allow_narrowing(scope_, from, to, span);
+  }
+  void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {}) {
+    report.allow_extension(scope_, what, span, std::move(fix));
+  }
 
   // The POU whose names are visible; set while anything of it is resolved.
   class Within {
@@ -151,6 +151,7 @@ class Sema {
   Library library;
   Facts facts;
   Addresses addresses;
+  Reporter report;
   std::vector<TestCase> test_cases;
   BodyLog* log = nullptr;  // of the body that is lowered, where somebody keeps one
   Objects objects{*this};
@@ -176,7 +177,6 @@ class Sema {
   void declare_type(const TypeDecl& decl, std::string_view name);
   bool use_library_type(std::string_view name);
   bool use_library_literal(std::string_view name);
-  base::SourceSpan declared_at(DiagnosticCode code, std::string_view name) const;
   void forward_declare(const TypeDecl& decl, std::string_view name);
   void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
   void collect_globals(const VarBlock& block, std::string_view list);
@@ -351,8 +351,6 @@ class Sema {
   // called_programs.cc
   VarId program_variable(std::string_view name, bool called);
 
-  base::Diagnostics& diagnostics_;
-  FollowUps follow_ups_;
   Purpose purpose_;
   uint32_t test_message_ = 0;
   std::vector<MockBody> mock_bodies_;

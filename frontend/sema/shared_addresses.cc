@@ -87,7 +87,7 @@ void SharedAddresses::collect_direct() {
 }
 
 void SharedAddresses::find() {
-  if (sema_.diagnostics_.has_errors()) return;
+  if (sema_.report.has_errors()) return;
   collect_variables();
   collect_direct();
   // Declared ones first, globals before those of programs: they give the name.

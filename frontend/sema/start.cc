@@ -85,7 +85,7 @@ void Objects::check_start_arguments(SpecId id, ir::TypeId type, std::vector<bool
   good[id.index] = true;
   if (!arguments || !type.valid() || constructs(type)) return;
   sema_.error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
-              "`" + sema_.type_text(type) + "` has no FB_Init that takes arguments",
+              "`" + sema_.report.type_text(type) + "` has no FB_Init that takes arguments",
               "write `:=` and a value, or (member := value)");
 }
 
@@ -119,7 +119,7 @@ void Objects::check_start_arguments() {
 void Objects::add_start() {
   sema_.pools.declare();
   check_start_arguments();
-  if (sema_.diagnostics_.has_errors()) return;
+  if (sema_.report.has_errors()) return;
   const auto count = static_cast<uint32_t>(sema_.declared.pous.size());
   for (uint32_t i = 0; i < count; ++i) {
     if (!has_members_to_start(sema_.declared.pous[i])) continue;

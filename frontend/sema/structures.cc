@@ -90,7 +90,7 @@ bool Sema::add_base(StructBuild& build, const Spec& spec) {
   if (!base.type.valid()) return false;
   if (!ir::is_structure(program.types[base.type].kind)) {
     error(DiagnosticCode::kTypeMismatch, tree[spec.element].span,
-          "`" + type_text(base.type) + "` is no structure; only structures can be extended");
+          "`" + report.type_text(base.type) + "` is no structure; only structures can be extended");
     return false;
   }
   build.type.members = program.types[base.type].members;
@@ -108,7 +108,7 @@ bool Sema::check_overlap(const ir::Type& type, base::SourceSpan span) {
       good = check_overlap(program.types[inner], span);
     } else if (!good) {
       error(DiagnosticCode::kBadReference, span,
-            "`" + member.name + "` is an instance of `" + type_text(inner) +
+            "`" + member.name + "` is an instance of `" + report.type_text(inner) +
                 "` and cannot share its place with other members",
             "keep function blocks outside of unions");
     }

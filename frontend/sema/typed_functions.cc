@@ -86,8 +86,8 @@ bool Sema::takes_typed(const Callee& callee, const std::vector<ExprId>& args) {
     if (!common.type.valid()) return false;
     if (common.type == callee.typed) continue;
     error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
-          "argument " + std::to_string(i + 1) + " is `" + type_text(argument.type) + "`, not `" +
-              type_text(callee.typed) + "`",
+          "argument " + std::to_string(i + 1) + " is `" + report.type_text(argument.type) +
+              "`, not `" + report.type_text(callee.typed) + "`",
           "convert it, or call " + std::string(callee.row->name) + ", which takes any type");
     return false;
   }

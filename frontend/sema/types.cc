@@ -94,16 +94,6 @@ std::optional<TypeUse> Sema::find_type(std::string_view name) {
   return TypeUse{interface ? program.types.ref_to(pou.self) : pou.self, {}};
 }
 
-std::string Sema::type_text(ir::TypeId type) const {
-  return program.types.text(is_interface(type) ? program.types[type].base : type);
-}
-
-bool Sema::is_interface(ir::TypeId type) const {
-  const ir::TypeTable& types = program.types;
-  return type.valid() && types[type].kind == ir::Kind::kRefTo &&
-         types[types[type].base].kind == ir::Kind::kInterface;
-}
-
 TypeUse Sema::resolve_named(const Spec& spec) {
   if (scope_.meaning != nullptr) {
     const NameMap<ir::TypeId>& generic = scope_.meaning->generic;
@@ -192,8 +182,8 @@ TypeUse Sema::resolve_subrange(const Spec& spec) {
   if (!base.type.valid()) return {};
   Traits traits = traits_of(program.types, base.type);
   if (!traits.integer && !traits.bits) {
-    error(DiagnosticCode::kTypeMismatch, spec.span, "a subrange of `" + type_text(base.type) + "`",
-          "subranges need an integer type");
+    error(DiagnosticCode::kTypeMismatch, spec.span,
+          "a subrange of `" + report.type_text(base.type) + "`", "subranges need an integer type");
     return {};
   }
   auto low = fold_bits(spec.low, base.type);
@@ -219,7 +209,8 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
   Traits traits = traits_of(program.types, base.type);
   if (!traits.integer && !traits.bits) {
     error(DiagnosticCode::kTypeMismatch, spec.span,
-          "an enumeration of `" + type_text(base.type) + "`", "enumerations need an integer type");
+          "an enumeration of `" + report.type_text(base.type) + "`",
+          "enumerations need an integer type");
     return {};
   }
   if (spec.enumerators.size() > base::kMaxEnumerators) {
@@ -248,8 +239,8 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
     }
     if (next < limits.low || next > limits.high) {
       error(DiagnosticCode::kLiteralOutOfRange, enumerator.name.span,
-            "`" + name + "` is " + wide_text(next) + "; `" + type_text(base.type) + "` ends at " +
-                wide_text(limits.high));
+            "`" + name + "` is " + wide_text(next) + "; `" + report.type_text(base.type) +
+                "` ends at " + wide_text(limits.high));
       return {};
     }
     type.literals.push_back(

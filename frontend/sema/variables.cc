@@ -81,7 +81,8 @@ void Sema::resolve_variable(VarId id) {
 void Sema::check_binding(const VarDecl& decl, ir::TypeId type) {
   if (!decl.binds || program.types[type].kind == ir::Kind::kReferenceTo) return;
   error(DiagnosticCode::kBadReference, tree[decl.init].span,
-        "`" + type_text(type) + "` is not a REFERENCE TO", "give the initial value with `:=`");
+        "`" + report.type_text(type) + "` is not a REFERENCE TO",
+        "give the initial value with `:=`");
 }
 
 void Sema::resolve_external(Variable& variable) {
@@ -98,8 +99,8 @@ void Sema::resolve_external(Variable& variable) {
   const Variable& global = resolve(found);
   if (global.type.valid() && global.type != variable.type) {
     error(DiagnosticCode::kExternalMismatch, variable.name.span,
-          quoted(variable.name) + " is `" + type_text(global.type) + "`, declared here as `" +
-              type_text(variable.type) + "`");
+          quoted(variable.name) + " is `" + report.type_text(global.type) +
+              "`, declared here as `" + report.type_text(variable.type) + "`");
     variable.external = {};
     variable.type = {};
   }
@@ -149,7 +150,7 @@ void Sema::check_placement(const Variable& variable) {
 Fix Sema::name_suggestion(std::string_view name, bool callable, bool instruction) const {
   NearestName nearest(name);
   if (scope_.pou != nullptr) nearest.offer_all(scope_.pou->names);
-  for (uint32_t at = objects.block_of(scope_.number()); at != kNoPou; at = declared.pous[at].base) {
+  for (uint32_t at = declared.block_of(scope_); at != kNoPou; at = declared.pous[at].base) {
     auto own = declared.pous[at].names.find(name);
     if (own != declared.pous[at].names.end() &&
         declared.variables[own->second.index].section == VarSection::kTemp) {
