@@ -143,7 +143,7 @@ std::optional<Analysed> analyse(Purpose purpose, Parsed& parsed, bool once,
   if (coverage != nullptr) coverage->finish(sema.program);
   if (diagnostics.has_errors()) return std::nullopt;
   ResourceUses uses = CommonUses(sema).of_resource();
-  return Analysed{{std::move(sema.program), std::move(sema.test_cases)}, std::move(uses)};
+  return Analysed{{std::move(sema.program), std::move(sema.tests.cases)}, std::move(uses)};
 }
 
 std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& sources,

@@ -78,7 +78,7 @@ ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOpti
   return &sema_->program;
 }
 
-const std::vector<TestCase>& Resident::test_cases() const { return sema_->test_cases; }
+const std::vector<TestCase>& Resident::test_cases() const { return sema_->tests.cases; }
 
 bool Resident::can_follow() const {
   const size_t found = diagnostics_.warning_count() + diagnostics_.note_count();

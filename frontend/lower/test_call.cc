@@ -190,7 +190,7 @@ void Body::fail_unless(ir::ValueId holds, ExprId message, const std::function<ir
         text = joined(narrow_string(words, wide(words.type)), joined(constant_text(": "), text));
       }
     }
-    build_.copy(global_place(sema_.test_message()), text);
+    build_.copy(global_place(sema_.tests.message), text);
   }
   build_.trap(ir::TrapKind::kAssert);
   build_.start(passed);

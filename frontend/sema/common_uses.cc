@@ -119,8 +119,8 @@ std::vector<bool> CommonUses::other_code() const {
 ResourceUses CommonUses::of_resource() {
   ResourceUses out;
   ir::Program& program = sema_.program;
-  if (sema_.resource_ == nullptr || sema_.tree.configs[0].resources.size() < 2) return out;
-  out.resource = sema_.resource_->name.text;
+  if (sema_.declared.resource == nullptr || sema_.tree.configs[0].resources.size() < 2) return out;
+  out.resource = sema_.declared.resource->name.text;
   const ir::Layouts natural = ir::natural_layouts(program.types);
   const auto add = [&](VarId id) -> CommonGlobal& {
     const Variable& variable = sema_.declared.variables[id.index];

@@ -61,14 +61,14 @@ void Sema::choose_resource() {
   for (const ResourceDecl& resource : config.resources) {
     nearest.offer(resource.name.text);
     bool wanted = options.resource.empty() || ir::same_name(resource.name.text, options.resource);
-    if (wanted && resource_ == nullptr) resource_ = &resource;
+    if (wanted && declared.resource == nullptr) declared.resource = &resource;
   }
-  if (resource_ == nullptr && !options.resource.empty()) {
+  if (declared.resource == nullptr && !options.resource.empty()) {
     error(DiagnosticCode::kUnknownResource, config.span,
           "there is no RESOURCE `" + options.resource + "`", nearest.fix());
   } else if (named && options.resource.empty() && config.resources.size() > 1) {
     warning(DiagnosticCode::kResourceChosen, config.resources[1].name.span,
-            "RESOURCE " + quoted(resource_->name) + " is compiled, " +
+            "RESOURCE " + quoted(declared.resource->name) + " is compiled, " +
                 quoted(config.resources[1].name) + " is left out",
             "say which one is meant: --resource NAME");
   }
@@ -82,15 +82,15 @@ void Sema::configure() {
   }
   const ConfigDecl& config = tree.configs[0];
   program.name = config.name.text;
-  if (config.resources.size() > 1 && resource_ != nullptr) {
-    program.name += "." + std::string(resource_->name.text);
+  if (config.resources.size() > 1 && declared.resource != nullptr) {
+    program.name += "." + std::string(declared.resource->name.text);
   }
-  if (resource_ != nullptr) {
+  if (declared.resource != nullptr) {
     apply_schedule(*this, config.name, config.attributes);
-    apply_schedule(*this, resource_->name, resource_->attributes);
-    configure_resource(*resource_);
+    apply_schedule(*this, declared.resource->name, declared.resource->attributes);
+    configure_resource(*declared.resource);
   }
-  if (resource_ == nullptr || resource_->programs.empty()) {
+  if (declared.resource == nullptr || declared.resource->programs.empty()) {
     error(DiagnosticCode::kNoPrograms, config.span, "the CONFIGURATION names no program to run",
           "add PROGRAM name WITH task : Type;");
   }
@@ -98,7 +98,7 @@ void Sema::configure() {
   InstancePaths paths(*this);
   paths.configure(tree.globals);
   paths.configure(config.globals);
-  if (resource_ != nullptr) paths.configure(resource_->globals);
+  if (declared.resource != nullptr) paths.configure(declared.resource->globals);
   paths.check_open_addresses();
 }
 

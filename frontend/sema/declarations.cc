@@ -51,7 +51,7 @@ void Sema::collect() {
     collect_globals(config.globals, config.name.text);
     if (config.resources.size() > 1) declared.outer_globals = declared.global_order.size();
     for (const ResourceDecl& resource : config.resources) {
-      if (&resource == resource_) collect_globals(resource.globals, resource.name.text);
+      if (&resource == declared.resource) collect_globals(resource.globals, resource.name.text);
     }
   }
   namespaces.check();

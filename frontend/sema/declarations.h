@@ -39,6 +39,7 @@ struct Declarations {
   NameMap<GlobalList> lists;
   NameMap<std::vector<EnumRef>> literals;
   std::vector<VarId> global_order;
+  const ResourceDecl* resource = nullptr;  // the one that is compiled
   size_t outer_globals = 0;  // of global_order: outside every RESOURCE, when there are several
 
   std::unordered_map<ir::TypeId, uint32_t> pou_by_type;

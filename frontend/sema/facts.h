@@ -31,6 +31,10 @@ class Facts {
   NoteStore notes;
   std::vector<SpecInfo> specs;
 
+  uint32_t depth = 0;  // of what is being resolved
+  // What is initialised now may hold an unbound handle.
+  bool binds_at_start = false;
+
  private:
   const Tree& tree_;
 };

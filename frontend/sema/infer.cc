@@ -36,13 +36,13 @@ ir::Kind integer_kind(const Literal& literal) {
 
 const Note& Sema::infer_now(ExprId id, Note& note) {
   const Expr& expr = tree[id];
-  if (depth_ > kMaxDepth) {
+  if (facts.depth > kMaxDepth) {
     error(DiagnosticCode::kTooDeep, expr.span, "the expression is nested too deeply",
           "split it with intermediate variables");
     note.progress = Progress::kDone;
     return note;
   }
-  ++depth_;
+  ++facts.depth;
   note = infer_kind(id, expr);
   if (expr.kind != ExprKind::kName && expr.kind != ExprKind::kMember) note.property = kNoPou;
   note.reference = {};
@@ -53,7 +53,7 @@ const Note& Sema::infer_now(ExprId id, Note& note) {
     note.can_trap = true;
   }
   if (note.constant) note.known = Known::kConstant;
-  --depth_;
+  --facts.depth;
   note.progress = Progress::kDone;
   return note;
 }

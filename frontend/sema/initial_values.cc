@@ -53,7 +53,7 @@ ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherw
     return array(expr, type, otherwise);
   }
   if (expr.kind == ExprKind::kStructInit && members) return structure(expr, type, otherwise);
-  if (types.is_reference(type) && sema_.binds_at_start_) {
+  if (types.is_reference(type) && sema_.facts.binds_at_start) {
     const Note& note = sema_.infer(id);
     if (note.type.valid() && !note.constant) return sema_.start_values.add(id);
   }

@@ -83,8 +83,8 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
     return true;
   }
   if (VarId id = sema_.find_variable(expr); id.valid()) return global(id, path);
-  bool prefix =
-      sema_.resource_ != nullptr && ir::same_name(sema_.resource_->name.text, expr.name.text);
+  bool prefix = sema_.declared.resource != nullptr &&
+                ir::same_name(sema_.declared.resource->name.text, expr.name.text);
   bool config =
       !sema_.tree.configs.empty() && ir::same_name(sema_.tree.configs[0].name.text, expr.name.text);
   if (prefix || config) return true;

@@ -46,12 +46,12 @@ void Sema::add_mock_body(const PouDecl& decl, bool inside_test) {
       std::string(decl.name.text) + "#" + std::to_string(declared.made_names.size()));
   PouDecl& made = declared.made_decls.emplace_back(decl);
   made.kind = PouKind::kFunction;
-  mock_bodies_.push_back({&decl, inside_test, add_pou(made, false, name)});
-  declared.pous[mock_bodies_.back().pou].test = true;
+  tests.mock_bodies.push_back({&decl, inside_test, add_pou(made, false, name)});
+  declared.pous[tests.mock_bodies.back().pou].test = true;
 }
 
 void Sema::resolve_mock_bodies() {
-  for (const MockBody& body : mock_bodies_) {
+  for (const MockBody& body : tests.mock_bodies) {
     const PouDecl& decl = *body.decl;
     const std::string_view name =
         namespaces.find(NameSort::kDeclaration, decl.qualifiers, decl.name);
@@ -65,7 +65,7 @@ void Sema::resolve_mock_bodies() {
 }
 
 bool Sema::mock_applies(uint32_t pou, const PouDecl& test) const {
-  for (const MockBody& body : mock_bodies_) {
+  for (const MockBody& body : tests.mock_bodies) {
     if (body.pou != pou) continue;
     const base::SourcePos at = body.decl->span.begin;
     if (!body.inside_test) return sources.file_of(at) == sources.file_of(test.span.begin);

@@ -106,7 +106,7 @@ void OldNames::rename_types() {
   for (const TypeDecl& decl : sema_.tree.types) {
     const std::string rule = renamed_from(sema_.tree, decl.attributes);
     if (rule.empty() || !decl.spec.valid() || sema_.library.holds(decl.name.span)) continue;
-    const SpecInfo& info = sema_.spec_info(decl.spec);
+    const SpecInfo& info = sema_.facts.of(sema_.scope_, decl.spec);
     if (!info.use.type.valid()) continue;
     ir::Type& type = sema_.program.types.edit(info.use.type);
     const bool own = ir::same_name(type.name, info.name.text) &&

@@ -3,14 +3,15 @@
 namespace frontend {
 
 Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t library_file,
-           const CompileOptions& compile_options, Purpose purpose, base::Diagnostics& diagnostics)
+           const CompileOptions& compile_options, Purpose purpose_of_build,
+           base::Diagnostics& diagnostics)
     : sources(source_map),
       tree(syntax),
       options(compile_options),
+      purpose(purpose_of_build),
       library(source_map, library_file),
       facts(syntax),
-      report(source_map, syntax, compile_options, program, declared, library, diagnostics),
-      purpose_(purpose) {
+      report(source_map, syntax, compile_options, program, declared, library, diagnostics) {
   program.name = options.name;
   ir::Type globals;
   globals.kind = ir::Kind::kGlobals;

@@ -27,6 +27,13 @@ namespace frontend {
 
 enum class Purpose : uint8_t { kRun, kTest };
 
+// Store: a build for tests.
+struct Tests {
+  std::vector<TestCase> cases;
+  uint32_t message = 0;  // member of the globals that takes the message of a failed assertion
+  std::vector<MockBody> mock_bodies;
+};
+
 class Sema {
  public:
   // Files from `library_file` on are the standard library, the others the project; and so are those
@@ -43,10 +50,8 @@ class Sema {
   void report_unused();
   void mark_used(VarId id);
   void mark_written(VarId id);
-  bool for_tests() const { return purpose_ == Purpose::kTest; }
+  bool for_tests() const { return purpose == Purpose::kTest; }
   bool in_test() const { return scope_.pou != nullptr && scope_.pou->test; }
-  // Member of the globals that takes the message of a failed assertion.
-  uint32_t test_message() const { return test_message_; }
   std::vector<const PouInfo*> mocked_functions() const;
   bool mock_applies(uint32_t pou, const PouDecl& test) const;  // a MOCK_FUNCTION's body
 
@@ -68,7 +73,7 @@ class Sema {
 
   // --- expressions (infer*.cc)
   const Note& infer(ExprId expr) {
-    Note& known = note(expr);
+    Note& known = facts.of(scope_, expr);
     return known.progress == Progress::kDone ? known : infer_now(expr, known);
   }
   Callee callee(const Expr& call);
@@ -145,31 +150,20 @@ class Sema {
   const base::SourceMap& sources;
   const Tree& tree;
   const CompileOptions& options;
+  const Purpose purpose;
   ir::Program program;
   // Stores, which report nothing.
   Declarations declared;
   Library library;
   Facts facts;
   Addresses addresses;
+  Tests tests;
   Reporter report;
-  std::vector<TestCase> test_cases;
   BodyLog* log = nullptr;  // of the body that is lowered, where somebody keeps one
   Objects objects{*this};
   StartValues start_values{*this};
   Namespaces namespaces{*this};
   Pools pools{*this};
-
- private:
-  friend class CommonUses;
-  friend class OldNames;
-  friend class Folder;
-  friend class Objects;
-  friend class InstancePaths;
-  friend class InitialBuilder;
-  friend class StartValues;
-  friend class Pools;
-  friend class Resident;
-  friend class SharedAddresses;
 
   // declarations.cc
   void collect_types();
@@ -351,15 +345,7 @@ class Sema {
   // called_programs.cc
   VarId program_variable(std::string_view name, bool called);
 
-  Purpose purpose_;
-  uint32_t test_message_ = 0;
-  std::vector<MockBody> mock_bodies_;
-  const ResourceDecl* resource_ = nullptr;  // the one that is compiled
-  PouScope scope_;                          // whose names are visible
-  uint32_t depth_ = 0;
-  SpecInfo& spec_info(SpecId spec) { return facts.of(scope_, spec); }
-  Note& note(ExprId expr) { return facts.of(scope_, expr); }
-  bool binds_at_start_ = false;  // what is initialised now may hold an unbound handle
+  PouScope scope_;  // whose names are visible
 };
 
 }  // namespace frontend

@@ -122,9 +122,9 @@ bool SharedAddresses::is_of_program(const Place& place) const {
 }
 
 bool SharedAddresses::has_several_instances(const Place& place) const {
-  if (!is_of_program(place) || sema_.resource_ == nullptr) return false;
+  if (!is_of_program(place) || sema_.declared.resource == nullptr) return false;
   const PouInfo& pou = sema_.declared.pous[sema_.declared.variables[place.variable.index].pou];
-  const std::vector<ProgramDecl>& all = sema_.resource_->programs;
+  const std::vector<ProgramDecl>& all = sema_.declared.resource->programs;
   return 1 < std::count_if(all.begin(), all.end(), [&](const ProgramDecl& program) {
            return ir::same_name(program.type.text, pou.name);
          });

@@ -65,7 +65,7 @@ TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
   StructBuild build;
   build.type.kind = spec.kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
   build.type.overlap = spec.kind == SpecKind::kUnion || spec.overlap;
-  build.type.name = spec_info(id).name.text;
+  build.type.name = facts.of(scope_, id).name.text;
   bool good = !spec.element.valid() || add_base(build, spec);
   for (const VarDecl& field : spec.fields) good = add_field(build, field) && good;
   close_bits(build);
@@ -75,7 +75,7 @@ TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
     return {};
   }
   if (build.type.overlap && !check_overlap(build.type, spec.span)) return {};
-  ir::TypeId made = spec_info(id).forward;
+  ir::TypeId made = facts.of(scope_, id).forward;
   if (made.valid()) {
     program.types.edit(made) = std::move(build.type);
   } else {
@@ -131,9 +131,9 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   ir::Member member;
   member.type = use.type;
   check_binding(field, use.type);
-  const bool saved = std::exchange(binds_at_start_, !build.type.overlap);
+  const bool saved = std::exchange(facts.binds_at_start, !build.type.overlap);
   member.init = field.init.valid() ? initial_value(field.init, use.type, use.init) : use.init;
-  binds_at_start_ = saved;
+  facts.binds_at_start = saved;
   if (!bit) close_bits(build);
   if (field.has_address) {
     member.address = field.address;

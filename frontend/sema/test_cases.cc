@@ -23,7 +23,7 @@ void check_test_name(Sema& sema, const PouDecl& test) {
     sema.error(DiagnosticCode::kExpectedName, test.name.span, "the test has no name",
                "say what it shows: TEST 'pump starts'");
   }
-  for (const TestCase& other : sema.test_cases) {
+  for (const TestCase& other : sema.tests.cases) {
     if (other.file != at.file || other.name != name || name.empty()) continue;
     sema.error(DiagnosticCode::kDuplicateName, test.name.span,
                "a second test `" + std::string(name) + "`; the first is in line " +
@@ -69,13 +69,13 @@ void Sema::collect_test(const PouDecl& test) {
     if (sources.file_of(other.span.begin) != file) continue;
     const PouDecl*& slot = other.kind == PouKind::kSetup ? setup : teardown;
     if (other.kind != PouKind::kSetup && other.kind != PouKind::kTeardown) continue;
-    if (slot != nullptr && slot != &other && test_cases.empty()) {
+    if (slot != nullptr && slot != &other && tests.cases.empty()) {
       error(DiagnosticCode::kDuplicateName, other.span, "a second SETUP or TEARDOWN in this file");
     }
     slot = &other;
   }
   const std::string& name =
-      declared.made_names.emplace_back("__TEST" + std::to_string(test_cases.size() + 1));
+      declared.made_names.emplace_back("__TEST" + std::to_string(tests.cases.size() + 1));
   PouDecl& made = declared.made_decls.emplace_back(test);
   made.kind = PouKind::kProgram;
   made.name = {name, test.name.span};
@@ -95,13 +95,13 @@ void Sema::collect_test(const PouDecl& test) {
   declared.pous[number].setup = setup;
   declared.pous[number].teardown = teardown;
   const base::SourceLocation at = sources.locate(test.span.begin);
-  test_cases.push_back(
+  tests.cases.push_back(
       {std::string(without_quotes(test.name.text)), std::string(at.file), at.line, name});
 }
 
 void Sema::configure_tests() {
   program.tasks.push_back({"Tests", kTestPeriodNs, 0, 0});
-  for (const TestCase& test : test_cases) {
+  for (const TestCase& test : tests.cases) {
     const PouInfo& pou = declared.pous[declared.pou_names.find(test.instance)->second];
     program.instances.push_back({test.instance, pou.self, 0, {}});
   }
@@ -113,7 +113,7 @@ void Sema::add_test_globals() {
   message.type = program.types.string(kMessageCapacity);
   message.section = ir::Section::kGlobal;
   std::vector<ir::Member>& members = program.types.edit(program.globals).members;
-  test_message_ = static_cast<uint32_t>(members.size());
+  tests.message = static_cast<uint32_t>(members.size());
   members.push_back(std::move(message));
   for (const Stmt& stmt : tree.stmts) {
     if (stmt.kind != StmtKind::kMockFunction || !stmt.target.valid()) continue;

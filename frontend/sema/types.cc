@@ -15,7 +15,7 @@ constexpr uint64_t kMaxElements = base::kMaxTypeBytes;
 
 TypeUse Sema::resolve_type(SpecId id) {
   if (!id.valid()) return {};
-  SpecInfo& info = spec_info(id);
+  SpecInfo& info = facts.of(scope_, id);
   if (info.progress == Progress::kDone) return info.use;
   const Spec& spec = tree[id];
   if (info.progress == Progress::kBusy) {
@@ -24,12 +24,12 @@ TypeUse Sema::resolve_type(SpecId id) {
           "break the circle; a type cannot contain itself");
     return {};
   }
-  if (depth_ >= kMaxTypeChain) {
+  if (facts.depth >= kMaxTypeChain) {
     error(DiagnosticCode::kTooDeep, spec.span, "types depend on each other too deeply");
     return {};
   }
   info.progress = Progress::kBusy;
-  ++depth_;
+  ++facts.depth;
   TypeUse use = resolve_kind(id, spec);
   info.use = use;
   // The default may name the type itself: Colour : (Red, Green) := Green.
@@ -38,7 +38,7 @@ TypeUse Sema::resolve_type(SpecId id) {
     info.use.init = initial_value(info.default_value, use.type, use.init);
     if (spec.kind == SpecKind::kEnum) program.types.edit(use.type).init = info.use.init;
   }
-  --depth_;
+  --facts.depth;
   return info.use;
 }
 
@@ -221,7 +221,7 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
   }
   ir::Type type;
   type.kind = ir::Kind::kEnum;
-  type.name = spec_info(id).name.text;
+  type.name = facts.of(scope_, id).name.text;
   type.base = without_range(program.types, base.type);
   Limits limits = limits_of(program.types.scalar(base.type));
   NameMap<bool> names;

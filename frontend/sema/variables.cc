@@ -30,7 +30,7 @@ VarId Sema::find_variable(const Expr& name) {
 
 const Variable& Sema::resolve_now(VarId id) {
   Variable& variable = declared.variables[id.index];
-  if (variable.progress == Progress::kBusy || depth_ >= kMaxVariableChain) {
+  if (variable.progress == Progress::kBusy || facts.depth >= kMaxVariableChain) {
     if (!variable.type.valid() || variable.constant) {
       error(DiagnosticCode::kRecursiveConstant, variable.name.span,
             quoted(variable.name) + " is needed to know its own type or value");
@@ -38,10 +38,10 @@ const Variable& Sema::resolve_now(VarId id) {
     return variable;
   }
   variable.progress = Progress::kBusy;
-  ++depth_;
+  ++facts.depth;
   Within scope(*this, variable.pou);
   resolve_variable(id);
-  --depth_;
+  --facts.depth;
   variable.progress = Progress::kDone;
   return variable;
 }
@@ -119,10 +119,10 @@ void Sema::resolve_initial(Variable& variable) {
   }
   const bool parameter = variable.storage == Storage::kLocal &&
                          (variable.section == VarSection::kInput || variable.constant);
-  const bool saved = std::exchange(binds_at_start_, !variable.constant && !parameter);
+  const bool saved = std::exchange(facts.binds_at_start, !variable.constant && !parameter);
   const Known least = at_call && variable.constant ? Known::kByCall : Known::kInitially;
   variable.init = initial_value(init, variable.type, variable.init, least);
-  binds_at_start_ = saved;
+  facts.binds_at_start = saved;
 }
 
 void Sema::check_placement(const Variable& variable) {

@@ -1,0 +1,47 @@
+// What the phases of sema have in common: the stores, and the scope that they look from, which is
+// a value. A phase has no state of its own: who needs one makes it, `ask<Types>().find_type(name)`.
+// What is asked for is resolved on the spot, so the phases ask each other in circles.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "frontend/sema/sema.h"
+
+namespace frontend {
+
+class Phase {
+ public:
+  explicit Phase(Sema& sema, const PouScope& scope = {}) : sema_(sema), scope_(scope) {}
+
+  // The type of an expression, and what else is known of it, before its context has spoken.
+  const Note& infer(ExprId expr) const { return sema_.infer(expr); }
+  // A variable with its type and its initial value.
+  const Variable& resolve(VarId id) const { return sema_.resolve(id); }
+
+  void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {}) const {
+    sema_.report.error(scope_, code, span, std::move(text), std::move(fix));
+  }
+  void warning(DiagnosticCode code, base::SourceSpan span, std::string text,
+               std::string fix = {}) const {
+    sema_.report.warning(code, span, std::move(text), std::move(fix));
+  }
+  bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span) const {
+    return sema_.report.allow_narrowing(scope_, from, to, span);
+  }
+  void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {}) const {
+    sema_.report.allow_extension(scope_, what, span, std::move(fix));
+  }
+
+ protected:
+  // Another phase, for the same scope.
+  template <class Other>
+  Other ask() const {
+    return Other(sema_, scope_);
+  }
+
+  Sema& sema_;
+  PouScope scope_;
+};
+
+}  // namespace frontend
