@@ -1,4 +1,6 @@
 #include "frontend/compile.h"
+#include "frontend/sema/collection.h"
+#include "frontend/sema/configuration.h"
 
 #include <algorithm>
 #include <memory>
@@ -16,6 +18,7 @@
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/unused.h"
 #include "frontend/sfc/declare.h"
 #include "stdlib/sources.h"
 
@@ -90,10 +93,10 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
 
 void declare_all(Sema& sema) {
   sema.report_not_supported();
-  sema.collect();
+  sema.ask<Collection>().collect();
   sema.resolve_declarations();
   Migrations(sema).collect();
-  sema.configure();
+  sema.ask<Configuration>().configure();
   sema.objects.add_start();
 }
 
@@ -104,7 +107,7 @@ void lower_body(Sema& sema, uint32_t pou) {
 void check_uses(Sema& sema) {
   sema.objects.check_recursion();
   CommonUses(sema).check_output_tasks();
-  sema.report_unused();
+  report_unused(sema);
 }
 
 void check_whole(Sema& sema) {
@@ -114,7 +117,7 @@ void check_whole(Sema& sema) {
   sema.program.overrides = ir::find_overrides(sema.program);
   CommonUses(sema).check_output_tasks();
   SharedAddresses(sema).check();
-  sema.report_unused();
+  report_unused(sema);
 }
 
 namespace {

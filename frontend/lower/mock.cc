@@ -1,5 +1,6 @@
 // Mocks: what tests put in the place of functions and of function block bodies.
 #include "frontend/lower/body.h"
+#include "frontend/sema/test_build.h"
 
 namespace frontend {
 namespace {
@@ -93,9 +94,9 @@ void Body::mock_statement(const Stmt& stmt) {
 
 // MOCK_FUNCTION declarations of a test's file and of the test itself are active from its start.
 void Body::activate_mock_bodies() {
-  for (const PouInfo* function : sema_.mocked_functions()) {
+  for (const PouInfo* function : sema_.ask<TestBuild>().mocked_functions()) {
     for (size_t i = 0; i < function->mock.bodies.size(); ++i) {
-      if (!sema_.mock_applies(function->mock.bodies[i], *info_.decl)) continue;
+      if (!sema_.ask<TestBuild>().mock_applies(function->mock.bodies[i], *info_.decl)) continue;
       build_.store(global_place(function->mock.active), ir::Scalar::kI32,
                    build_.constant(ir::Scalar::kI32, kMockedByValue + 1 + i));
     }

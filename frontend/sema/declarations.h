@@ -1,5 +1,5 @@
 // Store: what the sources and the library declare, by name, and the records that declarations
-// became. It reports nothing and resolves nothing. Collection fills it (declarations.cc), and what
+// became. It reports nothing and resolves nothing. Collection fills it (collection.cc), and what
 // is used for the first time is added while bodies are looked at; records have stable addresses.
 #pragma once
 

@@ -1,31 +1,32 @@
 // Global variables and the lists that they stand in: `List.x`, `.x`.
+#include "frontend/sema/collection.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 
 // A list's name: what {attribute 'list' := 'Name'} says, else the file's name without folder
 // and extension.
-std::string_view Sema::list_of(const VarBlock& block) const {
-  const Attribute* named = tree.find_attribute(block.attributes, "list");
+std::string_view Collection::list_of(const VarBlock& block) const {
+  const Attribute* named = sema_.tree.find_attribute(block.attributes, "list");
   if (named != nullptr && !named->value.empty()) return named->value;
-  std::string_view file = sources.file_name(sources.file_of(block.span.begin));
+  std::string_view file = sema_.sources.file_name(sema_.sources.file_of(block.span.begin));
   file.remove_prefix(file.find_last_of("/\\") + 1);
   return file.substr(0, file.find('.'));
 }
 
-void Sema::collect_globals(const std::vector<VarBlock>& blocks, std::string_view list) {
+void Collection::collect_globals(const std::vector<VarBlock>& blocks, std::string_view list) {
   for (const VarBlock& block : blocks) collect_globals(block, list);
 }
 
 // In a namespace, the namespace is the list that variables belong to.
-void Sema::collect_globals(const VarBlock& block, std::string_view list) {
+void Collection::collect_globals(const VarBlock& block, std::string_view list) {
   if (block.section != VarSection::kGlobal) return;
-  const bool closed = tree.in_namespace(block.scope);
-  const bool qualified = tree.find_attribute(block.attributes, "qualified_only") != nullptr;
+  const bool closed = sema_.tree.in_namespace(block.scope);
+  const bool qualified = sema_.tree.find_attribute(block.attributes, "qualified_only") != nullptr;
   if (closed) allow_extension("VAR_GLOBAL in a namespace", block.span);
   const std::string_view list_name =
-      namespaces.declare(NameSort::kList, block.scope, {list, block.span}, block.access);
-  GlobalList& names = declared.lists[list_name];
+      sema_.namespaces.declare(NameSort::kList, block.scope, {list, block.span}, block.access);
+  GlobalList& names = sema_.declared.lists[list_name];
   for (const VarDecl& decl : block.vars) {
     collect_enumerators(decl.spec, block.scope);
     for (const Name& name : decl.names) {
@@ -36,19 +37,19 @@ void Sema::collect_globals(const VarBlock& block, std::string_view list) {
       variable.constant = block.constant;
       variable.retain = block.retain;
       variable.storage = Storage::kGlobal;
-      variable.index = static_cast<uint32_t>(declared.global_order.size());
+      variable.index = static_cast<uint32_t>(sema_.declared.global_order.size());
       std::string_view whole;
       if (qualified) {
         variable.list = list_name;
-        whole = declared.keep_name(std::string(list_name) + "." + std::string(name.text));
+        whole = sema_.declared.keep_name(std::string(list_name) + "." + std::string(name.text));
       } else {
-        whole = namespaces.declare(NameSort::kVariable, block.scope, name, block.access);
+        whole = sema_.namespaces.declare(NameSort::kVariable, block.scope, name, block.access);
         if (closed) variable.list = whole.substr(0, whole.rfind('.'));
       }
-      VarId id = add_variable(variable, declared.globals, whole);
+      VarId id = add_variable(variable, sema_.declared.globals, whole);
       if (!id.valid()) continue;
       names.names.emplace(name.text, id);
-      declared.global_order.push_back(id);
+      sema_.declared.global_order.push_back(id);
     }
   }
 }

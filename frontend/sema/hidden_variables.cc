@@ -2,6 +2,7 @@
 // the instance, and what edge inputs remember.
 #include <span>
 
+#include "frontend/sema/collection.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -9,12 +10,12 @@ namespace frontend {
 // One for all instances and calls: a global that is named `Pou.variable`.
 // Also for all that is made of one declaration: open functions, programs with connections; unless
 // the type is open too.
-VarId Sema::add_static(Variable variable, PouInfo& info) {
-  const Spec& spec = tree[variable.decl->spec];
+VarId Collection::add_static(Variable variable, PouInfo& info) {
+  const Spec& spec = sema_.tree[variable.decl->spec];
   const bool generic = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
   if (info.open && generic) return add_variable(variable, info.names);
   if (info.meaning != nullptr && !generic) {
-    for (const PouInfo& original : declared.pous) {
+    for (const PouInfo& original : sema_.declared.pous) {
       if (original.decl != info.decl || original.meaning != nullptr) continue;
       const VarId shared = original.names.at(variable.name.text);
       info.names.emplace(variable.name.text, shared);
@@ -22,10 +23,10 @@ VarId Sema::add_static(Variable variable, PouInfo& info) {
     }
   }
   variable.storage = Storage::kGlobal;
-  if (info.static_list.empty()) info.static_list = declared.keep_name(static_list_name(info));
+  if (info.static_list.empty()) info.static_list = sema_.declared.keep_name(static_list_name(info));
   variable.list = info.static_list;
   VarId id = add_variable(variable, info.names);
-  if (id.valid()) place_global(id);
+  if (id.valid()) sema_.place_global(id);
   return id;
 }
 
@@ -48,17 +49,17 @@ static std::string parameters_text(const Sema& sema, const PouDecl& decl) {
 }
 
 // Without the characters that paths are made of: instances of open functions have them.
-std::string Sema::static_list_name(const PouInfo& info) const {
+std::string Collection::static_list_name(const PouInfo& info) const {
   if (info.self.valid()) {  // of a method: `Block#method`
-    const std::string& block = program.types[info.self].name;
+    const std::string& block = sema_.program.types[info.self].name;
     if (info.owner == kNoPou) return block;
     const bool setter = info.decl->kind == PouKind::kSetter;
     return block + "#" + std::string(info.decl->name.text) + (setter ? "#Set" : "");
   }
-  std::string name = info.open ? std::string(info.name) : program.pous[info.id.index].name;
-  const auto first = declared.pou_names.find(info.name);
-  if (first != declared.pou_names.end() && first->second != info.number)
-    name += parameters_text(*this, *info.decl);
+  std::string name = info.open ? std::string(info.name) : sema_.program.pous[info.id.index].name;
+  const auto first = sema_.declared.pou_names.find(info.name);
+  if (first != sema_.declared.pou_names.end() && first->second != info.number)
+    name += parameters_text(sema_, *info.decl);
   for (char& c : std::span(name).subspan(info.name.size())) {
     if (c == '.' || c == '[' || c == ']') c = '_';
   }
@@ -66,16 +67,17 @@ std::string Sema::static_list_name(const PouInfo& info) const {
 }
 
 // A variable of a method that is kept in the instance: a member that is named `Method#variable`.
-void Sema::add_instance_variable(Variable variable, PouInfo& method) {
-  if (method.owner == kNoPou || declared.pous[method.owner].decl->kind == PouKind::kInterface) {
+void Collection::add_instance_variable(Variable variable, PouInfo& method) {
+  if (method.owner == kNoPou ||
+      sema_.declared.pous[method.owner].decl->kind == PouKind::kInterface) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
           "VAR_INST stands in methods of function blocks, classes and programs");
     return;
   }
   VarId id = add_variable(variable, method.names);
   if (!id.valid()) return;
-  declared.variables[id.index].method = method.decl->name.text;
-  declared.pous[method.owner].variables.push_back(id);
+  sema_.declared.variables[id.index].method = method.decl->name.text;
+  sema_.declared.pous[method.owner].variables.push_back(id);
 }
 
 // After the globals that are there.
@@ -94,12 +96,12 @@ void Sema::place_global(VarId id) {
 }
 
 // `x#last` remembers, `x#edge` is what the body sees; no source can write these names.
-void Sema::add_edge(VarId input, PouInfo& info) {
-  const Variable original = declared.variables[input.index];
+void Collection::add_edge(VarId input, PouInfo& info) {
+  const Variable original = sema_.declared.variables[input.index];
   auto add = [&](const char* suffix, VarSection section) {
     Variable hidden;
     hidden.name = original.name;
-    hidden.name.text = declared.keep_name(std::string(original.name.text) + suffix);
+    hidden.name.text = sema_.declared.keep_name(std::string(original.name.text) + suffix);
     hidden.decl = original.decl;
     hidden.section = section;
     hidden.pou = original.pou;
@@ -111,8 +113,8 @@ void Sema::add_edge(VarId input, PouInfo& info) {
   };
   VarId last = add("#last", VarSection::kLocal);
   VarId edge = add("#edge", VarSection::kTemp);
-  declared.variables[input.index].last = last;
-  declared.variables[input.index].edge = edge;
+  sema_.declared.variables[input.index].last = last;
+  sema_.declared.variables[input.index].edge = edge;
 }
 
 void Sema::check_edge(const Variable& variable) {

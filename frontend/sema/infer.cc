@@ -1,5 +1,6 @@
 // The type of every expression from the inside out, before its context has spoken.
 // Each expression is visited once; the note stays.
+#include "frontend/sema/collection.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/width.h"
@@ -224,7 +225,7 @@ Note Sema::infer_enum_name(const Expr& expr) {
   }
   std::string_view name = namespaces.find(NameSort::kLiteral, expr);
   auto found = declared.literals.find(name);
-  if (found == declared.literals.end() && plain && use_library_literal(name))
+  if (found == declared.literals.end() && plain && ask<Collection>().use_library_literal(name))
     found = declared.literals.find(name);
   if (found == declared.literals.end()) {
     VarId id = plain ? program_variable(name, false) : VarId();

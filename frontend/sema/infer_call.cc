@@ -1,6 +1,7 @@
 // Calls: what is called, and what it gives back.
 #include <algorithm>
 
+#include "frontend/sema/collection.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
@@ -77,7 +78,7 @@ Callee Sema::named_callee(const Expr& call, const Expr& head) {
   Callee callee;
   const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
   bool known = declared.pou_names.contains(name);
-  if (!known && !library.functions.contains(name)) known = use_library(name);
+  if (!known && !library.functions.contains(name)) known = ask<Collection>().use_library(name);
   if (known) {
     uint32_t number = declared.pou_names.find(name)->second;
     if (declared.pous[number].decl->kind == PouKind::kFunction) {

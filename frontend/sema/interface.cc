@@ -5,6 +5,7 @@
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/test_build.h"
 
 namespace frontend {
 namespace {
@@ -68,7 +69,7 @@ void Sema::resolve_globals() {
     program.types.edit(program.globals)
         .members.push_back(member_of(variable, ir::Section::kGlobal));
   }
-  if (for_tests()) add_test_globals();
+  if (for_tests()) ask<TestBuild>().add_test_globals();
 }
 
 ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
@@ -126,7 +127,7 @@ void Sema::resolve_interface(uint32_t number) {
     members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
   const bool block = info.decl->kind == PouKind::kFunctionBlock || info.as_block;
-  if (for_tests() && block) add_mock_members(info, members);
+  if (for_tests() && block) ask<TestBuild>().add_mock_members(info, members);
   bool instance = info.self.valid() && info.owner == kNoPou;
   if (instance) program.types.edit(info.self).members = std::move(members);
   if (!info.id.valid()) return;

@@ -1,5 +1,6 @@
 // Members with code, and what names mean in a block with bases.
 #include "frontend/sema/objects.h"
+#include "frontend/sema/collection.h"
 
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
@@ -51,8 +52,8 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   info.owner = block;
   info.self = owner.self;
   if (owner.meaning != nullptr) info.meaning = std::make_unique<Meaning>();
-  sema_.add_code(info, code_name(sema_.program.types[owner.self].name, decl));
-  sema_.collect_interface(info.number);
+  sema_.ask<Collection>().add_code(info, code_name(sema_.program.types[owner.self].name, decl));
+  sema_.ask<Collection>().collect_interface(info.number);
 }
 
 VarId Objects::find_variable(uint32_t block, std::string_view name) const {

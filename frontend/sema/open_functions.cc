@@ -1,6 +1,7 @@
 // Functions whose parameters leave types open: ANY_NUM and the like, ARRAY[*]. Each
 // combination of argument types gives an instance with code of its own. So do STRING
 // in-outs whose argument has another capacity: inside, the argument's own one counts.
+#include "frontend/sema/collection.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -35,20 +36,20 @@ bool belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type
 
 }  // namespace
 
-bool Sema::is_generic_name(std::string_view name) const {
+bool Collection::is_generic_name(std::string_view name) const {
   for (std::string_view generic : kGenericNames) {
     if (ir::same_name(name, generic)) return true;
   }
   return false;
 }
 
-bool Sema::is_open(const PouDecl& decl) const {
+bool Collection::is_open(const PouDecl& decl) const {
   if (decl.kind != PouKind::kFunction) return false;
   for (const VarBlock& block : decl.blocks) {
     if (!is_parameter(block.section)) continue;
     for (const VarDecl& variable : block.vars) {
       if (!variable.spec.valid()) continue;
-      const Spec& spec = tree[variable.spec];
+      const Spec& spec = sema_.tree[variable.spec];
       bool generic = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
       if (generic || (spec.kind == SpecKind::kArray && spec.open_bounds)) return true;
     }
@@ -99,7 +100,7 @@ Callee Sema::bind_open(const Expr& call, uint32_t pou) {
   for (const Match& match : this->match(call, info)) {
     const Variable& parameter = declared.variables[match.parameter.index];
     const Spec& spec = tree[parameter.decl->spec];
-    bool named = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
+    bool named = spec.kind == SpecKind::kNamed && ask<Collection>().is_generic_name(spec.name.text);
     if (named && !bind_generic(match, spec, generic)) return {};
     bool open = spec.kind == SpecKind::kArray && spec.open_bounds;
     if (open && !bind_array(match, spec, generic)) return {};
@@ -127,7 +128,7 @@ Callee Sema::bind_open(const Expr& call, uint32_t pou) {
                 "` is not connected");
       return {};
     }
-    bool named = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
+    bool named = spec.kind == SpecKind::kNamed && ask<Collection>().is_generic_name(spec.name.text);
     if (!named || bound.contains(spec.name.text)) continue;
     error(DiagnosticCode::kBadGenericArgument, call.span,
           "no argument says what `" + std::string(spec.name.text) + "` is for `" +
@@ -168,7 +169,7 @@ bool Sema::bind_array(const Match& match, const Spec& spec, NameMap<Note>& gener
     return false;
   }
   const Spec& element = tree[spec.element];
-  if (element.kind == SpecKind::kNamed && is_generic_name(element.name.text)) {
+  if (element.kind == SpecKind::kNamed && ask<Collection>().is_generic_name(element.name.text)) {
     Note note;
     note.type = array.base;
     generic.try_emplace(element.name.text, note);
@@ -235,7 +236,7 @@ uint32_t Sema::instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir
   code.name = std::string(info.name) + "(" + name + ")";
   while (program.find_pou(code.name).valid()) code.name += "'";
   program.pous.push_back(std::move(code));
-  collect_interface(number);
+  ask<Collection>().collect_interface(number);
   for (size_t i = 0; i < types.size() && i < info.variables.size(); ++i) {
     declared.variables[info.variables[i].index].bound = types[i];
   }

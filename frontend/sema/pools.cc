@@ -1,4 +1,5 @@
 #include "frontend/sema/pools.h"
+#include "frontend/sema/collection.h"
 
 #include <algorithm>
 #include <charconv>
@@ -83,7 +84,7 @@ uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
   value.spec = decl.spec;
   value.span = decl.name.span;
   block.vars.push_back(std::move(value));
-  const uint32_t number = sema_.add_pou(made, false, made.name.text);
+  const uint32_t number = sema_.ask<Collection>().add_pou(made, false, made.name.text);
   sema_.objects.inherit();
   sema_.resolve_interface(number);
   return number;

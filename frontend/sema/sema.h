@@ -41,19 +41,14 @@ class Sema {
   Sema(const base::SourceMap& sources, const Tree& tree, uint32_t library_file,
        const CompileOptions& options, Purpose purpose, base::Diagnostics& diagnostics);
 
-  // --- declarations (declarations.cc, interface.cc, configuration.cc)
+  // --- declarations (collection.cc, interface.cc, configuration.cc)
   void report_not_supported();  // not_supported.cc
-  void collect();
   void resolve_declarations();
-  void configure();
   void finish_programs();  // after all bodies
-  void report_unused();
   void mark_used(VarId id);
   void mark_written(VarId id);
   bool for_tests() const { return purpose == Purpose::kTest; }
   bool in_test() const { return scope_.pou != nullptr && scope_.pou->test; }
-  std::vector<const PouInfo*> mocked_functions() const;
-  bool mock_applies(uint32_t pou, const PouDecl& test) const;  // a MOCK_FUNCTION's body
 
   // --- types (types.cc, structures.cc, containment.cc)
   TypeUse resolve_type(SpecId spec);
@@ -134,6 +129,12 @@ class Sema {
     report.allow_extension(scope_, what, span, std::move(fix));
   }
 
+  // A phase, for the scope that is looked at.
+  template <class Wanted>
+  Wanted ask() {
+    return Wanted(*this, scope_);
+  }
+
   // The POU whose names are visible; set while anything of it is resolved.
   class Within {
    public:
@@ -165,31 +166,6 @@ class Sema {
   Namespaces namespaces{*this};
   Pools pools{*this};
 
-  // declarations.cc
-  void collect_types();
-  void collect_library_type(const TypeDecl& decl);
-  void declare_type(const TypeDecl& decl, std::string_view name);
-  bool use_library_type(std::string_view name);
-  bool use_library_literal(std::string_view name);
-  void forward_declare(const TypeDecl& decl, std::string_view name);
-  void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
-  void collect_globals(const VarBlock& block, std::string_view list);
-  void collect_globals(const std::vector<VarBlock>& blocks, std::string_view list);
-  std::string_view list_of(const VarBlock& block) const;
-  void collect_variables(uint32_t pou, const VarBlock& block);
-  VarId shared_by_original(const PouInfo& info, const Variable& variable) const;
-  void collect_pous();
-  uint32_t add_pou(const PouDecl& decl, bool of_library, std::string_view name);
-  void add_code(PouInfo& info, std::string name);
-  void collect_interface(uint32_t pou);
-  void number_variables(PouInfo& info);
-  void add_aliases(PouInfo& info);
-  VarId add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name = {});
-  bool use_library(std::string_view name);
-
-  // open_functions.cc
-  bool is_open(const PouDecl& decl) const;
-  bool is_generic_name(std::string_view name) const;
   std::vector<Match> match(const Expr& call, const PouInfo& callee) const;
   Callee select_function(const Expr& call, uint32_t first);
   uint32_t select_overload(const Expr& call, uint32_t first);
@@ -206,16 +182,6 @@ class Sema {
   // bounds.cc
   Note infer_bound(const Expr& expr, bool upper);
   std::optional<int64_t> bound_of(const Expr& expr, bool upper);
-  // test_cases.cc
-  void collect_tests();
-  void collect_test(const PouDecl& test);
-  void configure_tests();
-  void add_test_globals();
-  void add_function_mock(std::string_view name, base::SourceSpan span);
-  void add_mock_body(const PouDecl& decl, bool inside_test);
-  void resolve_mock_bodies();
-  void check_mock_body(const PouDecl& decl, const PouInfo& mock, const PouInfo& function);
-  void add_mock_members(PouInfo& info, std::vector<ir::Member>& members);
 
   // interface.cc
   void resolve_interface(uint32_t pou);
@@ -262,11 +228,7 @@ class Sema {
   StructureField add_bit(StructBuild& build, const Name& name, ir::ConstId init, std::string rule);
   void close_bits(StructBuild& build);
 
-  std::string static_list_name(const PouInfo& info) const;
-  VarId add_static(Variable variable, PouInfo& info);
-  void add_instance_variable(Variable variable, PouInfo& method);
   void place_global(VarId id);
-  void add_edge(VarId input, PouInfo& info);
   void check_edge(const Variable& variable);
 
   // enable.cc
@@ -324,23 +286,6 @@ class Sema {
   std::optional<TypeUse> initial_variable(const Expr& expr, VarId id);
   std::optional<TypeUse> initial_member(const Expr& expr);
   std::optional<TypeUse> initial_element(const Expr& expr);
-
-  // configuration.cc
-  void choose_resource();
-  void default_configuration();
-  void configure_resource(const ResourceDecl& resource);
-  std::optional<uint32_t> find_task(const Name& name);
-  std::optional<uint32_t> find_program(const ProgramDecl& decl);
-  void add_instance(const ProgramDecl& decl, const ResourceDecl& resource);
-  void add_block_task(const BlockTask& decl, const PouInfo& info);
-  ir::ConstId program_arguments(const ProgramDecl& decl, const PouInfo& info,
-                                std::vector<Connection>& connections);
-  void retain_program(const PouInfo& info);
-  uint32_t clone_program(uint32_t original, const ProgramDecl& decl);
-
-  // tasks.cc
-  void add_task(const TaskDecl& decl);
-  uint32_t event_of(ExprId expr);
 
   // called_programs.cc
   VarId program_variable(std::string_view name, bool called);

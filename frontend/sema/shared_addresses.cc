@@ -1,4 +1,5 @@
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/collection.h"
 
 #include <algorithm>
 #include <set>
@@ -38,7 +39,7 @@ const AddressView* direct_view(const Sema& sema, const Expr& expr) {
 std::string SharedAddresses::path_of(const Variable& variable) const {
   std::string list(variable.list);
   if (list.empty() && variable.storage == Storage::kMember) {
-    list = sema_.static_list_name(sema_.declared.pous[variable.pou]);
+    list = sema_.ask<Collection>().static_list_name(sema_.declared.pous[variable.pou]);
   }
   return (list.empty() ? "" : list + ".") + std::string(variable.name.text);
 }
@@ -243,7 +244,8 @@ void SharedAddresses::make_one(const Group& group) {
   const VarId first = group[0].variable;
   Variable& one = sema_.declared.variables[first.index];
   if (one.storage != Storage::kGlobal) {
-    one.list = sema_.declared.keep_name(sema_.static_list_name(sema_.declared.pous[one.pou]));
+    one.list = sema_.declared.keep_name(
+        sema_.ask<Collection>().static_list_name(sema_.declared.pous[one.pou]));
     programs_[one.pou] = true;
     one.storage = Storage::kGlobal;
     sema_.declared.global_order.push_back(first);
@@ -382,7 +384,8 @@ void SharedAddresses::number_again() {
     global_of(variable.view);
     if (variable.view.global != AddressView::kNone) variable.index = variable.view.global;
   }
-  for (const auto& [pou, left] : programs_) sema_.number_variables(sema_.declared.pous[pou]);
+  for (const auto& [pou, left] : programs_)
+    sema_.ask<Collection>().number_variables(sema_.declared.pous[pou]);
 }
 
 }  // namespace frontend

@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "base/limits.h"
+#include "frontend/sema/collection.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/stamps.h"
@@ -173,7 +174,8 @@ uint32_t Objects::add_made_method(uint32_t block, std::string_view name, MadeCod
   info.owner = block;
   info.self = owner.self;
   info.made = code;
-  sema_.add_code(info, sema_.program.types[owner.self].name + "." + std::string(name));
+  sema_.ask<Collection>().add_code(info,
+                                   sema_.program.types[owner.self].name + "." + std::string(name));
   sema_.resolve_interface(number);
   return number;
 }
@@ -243,7 +245,7 @@ void Objects::add_start_program() {
   const VarId first = start_globals_.empty() ? sema_.pools.all()[0].elements : start_globals_[0];
   made.span = sema_.declared.variables[first.index].name.span;
   made.name = {ir::kStartProgram, made.span};
-  const uint32_t number = sema_.add_pou(made, false, made.name.text);
+  const uint32_t number = sema_.ask<Collection>().add_pou(made, false, made.name.text);
   sema_.declared.pous[number].made = MadeCode::kStart;
   sema_.resolve_interface(number);
   ir::Task task;

@@ -1,4 +1,5 @@
 // TASK: when the programs run.
+#include "frontend/sema/configuration.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/task_attributes.h"
@@ -11,8 +12,8 @@ constexpr int64_t kMaxPriority = 65535;
 
 }  // namespace
 
-void Sema::add_task(const TaskDecl& decl) {
-  for (const ir::Task& task : program.tasks) {
+void Configuration::add_task(const TaskDecl& decl) {
+  for (const ir::Task& task : sema_.program.tasks) {
     if (!ir::same_name(task.name, decl.name.text)) continue;
     error(DiagnosticCode::kDuplicateName, decl.name.span,
           "task " + quoted(decl.name) + " is declared twice");
@@ -22,7 +23,7 @@ void Sema::add_task(const TaskDecl& decl) {
   task.period_ns = decl.single.valid() ? 0 : kDefaultPeriodNs;
   if (decl.single.valid()) task.event = event_of(decl.single);
   if (decl.interval.valid()) {
-    auto period = fold_bits(decl.interval, program.types.elementary(ir::Kind::kTime));
+    auto period = sema_.fold_bits(decl.interval, sema_.program.types.elementary(ir::Kind::kTime));
     task.period_ns = period ? static_cast<int64_t>(*period) : kDefaultPeriodNs;
     // With SINGLE, an interval of 0 means that edges alone release the task.
     const bool too_long = task.period_ns > ir::kLongestTimeNs;
@@ -34,7 +35,7 @@ void Sema::add_task(const TaskDecl& decl) {
     }
   }
   if (decl.priority.valid()) {
-    int64_t priority = fold_integer(decl.priority).value_or(0);
+    int64_t priority = sema_.fold_integer(decl.priority).value_or(0);
     if (priority < 0 || priority > kMaxPriority) {
       error(DiagnosticCode::kBadPriority, decl.span,
             "task " + quoted(decl.name) + " has the priority " + std::to_string(priority),
@@ -43,22 +44,22 @@ void Sema::add_task(const TaskDecl& decl) {
     }
     task.priority = static_cast<uint32_t>(priority);
   }
-  apply_task_attributes(*this, decl, task);
-  program.tasks.push_back(std::move(task));
+  apply_task_attributes(sema_, decl, task);
+  sema_.program.tasks.push_back(std::move(task));
 }
 
 // SINGLE := variable: a BOOL among the globals.
-uint32_t Sema::event_of(ExprId id) {
-  const Expr& expr = tree[id];
+uint32_t Configuration::event_of(ExprId id) {
+  const Expr& expr = sema_.tree[id];
   const Note note = infer(id);
   if (!note.type.valid()) return ir::kNoEvent;
-  bool boolean = program.types.root_kind(note.type) == ir::Kind::kBool;
+  bool boolean = sema_.program.types.root_kind(note.type) == ir::Kind::kBool;
   if (note.view) {
     error(DiagnosticCode::kBadEvent, expr.span, "SINGLE needs a BOOL that shares no bytes",
           "copy the bit to a global variable of its own");
     return ir::kNoEvent;
   }
-  if (boolean && expr.kind == ExprKind::kDirect) return direct_member(expr);
+  if (boolean && expr.kind == ExprKind::kDirect) return sema_.direct_member(expr);
   if (boolean && note.variable.valid()) {
     const Variable& variable = resolve(note.variable);
     if (variable.storage == Storage::kGlobal && !variable.constant) return variable.index;

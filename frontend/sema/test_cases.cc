@@ -2,7 +2,9 @@
 // file are part of every one. The project's own configuration gives globals only.
 #include <set>
 
+#include "frontend/sema/collection.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/test_build.h"
 
 namespace frontend {
 namespace {
@@ -47,12 +49,12 @@ void check_idle(Sema& sema) {
 
 }  // namespace
 
-void Sema::collect_tests() {
-  check_idle(*this);
-  for (const PouDecl& decl : tree.tests) {
+void TestBuild::collect_tests() {
+  check_idle(sema_);
+  for (const PouDecl& decl : sema_.tree.tests) {
     if (decl.kind == PouKind::kTest) collect_test(decl);
   }
-  for (const PouDecl& decl : tree.tests) {
+  for (const PouDecl& decl : sema_.tree.tests) {
     if (decl.kind == PouKind::kMockFunction) add_mock_body(decl, false);
     for (const PouDecl& member : decl.members) {
       if (member.kind == PouKind::kMockFunction) add_mock_body(member, true);
@@ -60,23 +62,23 @@ void Sema::collect_tests() {
   }
 }
 
-void Sema::collect_test(const PouDecl& test) {
-  check_test_name(*this, test);
-  const uint32_t file = sources.file_of(test.span.begin);
+void TestBuild::collect_test(const PouDecl& test) {
+  check_test_name(sema_, test);
+  const uint32_t file = sema_.sources.file_of(test.span.begin);
   const PouDecl* setup = nullptr;
   const PouDecl* teardown = nullptr;
-  for (const PouDecl& other : tree.tests) {
-    if (sources.file_of(other.span.begin) != file) continue;
+  for (const PouDecl& other : sema_.tree.tests) {
+    if (sema_.sources.file_of(other.span.begin) != file) continue;
     const PouDecl*& slot = other.kind == PouKind::kSetup ? setup : teardown;
     if (other.kind != PouKind::kSetup && other.kind != PouKind::kTeardown) continue;
-    if (slot != nullptr && slot != &other && tests.cases.empty()) {
+    if (slot != nullptr && slot != &other && sema_.tests.cases.empty()) {
       error(DiagnosticCode::kDuplicateName, other.span, "a second SETUP or TEARDOWN in this file");
     }
     slot = &other;
   }
-  const std::string& name =
-      declared.made_names.emplace_back("__TEST" + std::to_string(tests.cases.size() + 1));
-  PouDecl& made = declared.made_decls.emplace_back(test);
+  const std::string& name = sema_.declared.made_names.emplace_back(
+      "__TEST" + std::to_string(sema_.tests.cases.size() + 1));
+  PouDecl& made = sema_.declared.made_decls.emplace_back(test);
   made.kind = PouKind::kProgram;
   made.name = {name, test.name.span};
   if (setup != nullptr) {
@@ -85,40 +87,41 @@ void Sema::collect_test(const PouDecl& test) {
   if (teardown != nullptr) {
     made.blocks.insert(made.blocks.end(), teardown->blocks.begin(), teardown->blocks.end());
   }
-  const uint32_t number = add_pou(made, false, name);
-  declared.pous[number].test = true;
+  const uint32_t number = ask<Collection>().add_pou(made, false, name);
+  sema_.declared.pous[number].test = true;
   // Not every test needs all that SETUP makes.
-  for (VarId id : declared.pous[number].variables) {
-    const uint32_t at = declared.variables[id.index].name.span.begin.offset;
-    declared.variables[id.index].used = at < test.span.begin.offset || at >= test.span.end.offset;
+  for (VarId id : sema_.declared.pous[number].variables) {
+    const uint32_t at = sema_.declared.variables[id.index].name.span.begin.offset;
+    sema_.declared.variables[id.index].used =
+        at < test.span.begin.offset || at >= test.span.end.offset;
   }
-  declared.pous[number].setup = setup;
-  declared.pous[number].teardown = teardown;
-  const base::SourceLocation at = sources.locate(test.span.begin);
-  tests.cases.push_back(
+  sema_.declared.pous[number].setup = setup;
+  sema_.declared.pous[number].teardown = teardown;
+  const base::SourceLocation at = sema_.sources.locate(test.span.begin);
+  sema_.tests.cases.push_back(
       {std::string(without_quotes(test.name.text)), std::string(at.file), at.line, name});
 }
 
-void Sema::configure_tests() {
-  program.tasks.push_back({"Tests", kTestPeriodNs, 0, 0});
-  for (const TestCase& test : tests.cases) {
-    const PouInfo& pou = declared.pous[declared.pou_names.find(test.instance)->second];
-    program.instances.push_back({test.instance, pou.self, 0, {}});
+void TestBuild::configure_tests() {
+  sema_.program.tasks.push_back({"Tests", kTestPeriodNs, 0, 0});
+  for (const TestCase& test : sema_.tests.cases) {
+    const PouInfo& pou = sema_.declared.pous[sema_.declared.pou_names.find(test.instance)->second];
+    sema_.program.instances.push_back({test.instance, pou.self, 0, {}});
   }
 }
 
-void Sema::add_test_globals() {
+void TestBuild::add_test_globals() {
   ir::Member message;
   message.name = kTestMessage;
-  message.type = program.types.string(kMessageCapacity);
+  message.type = sema_.program.types.string(kMessageCapacity);
   message.section = ir::Section::kGlobal;
-  std::vector<ir::Member>& members = program.types.edit(program.globals).members;
-  tests.message = static_cast<uint32_t>(members.size());
+  std::vector<ir::Member>& members = sema_.program.types.edit(sema_.program.globals).members;
+  sema_.tests.message = static_cast<uint32_t>(members.size());
   members.push_back(std::move(message));
-  for (const Stmt& stmt : tree.stmts) {
+  for (const Stmt& stmt : sema_.tree.stmts) {
     if (stmt.kind != StmtKind::kMockFunction || !stmt.target.valid()) continue;
-    const Expr& target = tree[stmt.target];
-    const std::string_view name = namespaces.find(NameSort::kDeclaration, target);
+    const Expr& target = sema_.tree[stmt.target];
+    const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, target);
     if (!name.empty()) add_function_mock(name, target.span);
   }
   resolve_mock_bodies();

@@ -1,6 +1,7 @@
 // Type expressions -> TypeIds. Aliases, named strings, arrays and subranges stand
 // for their content; structures and enumerations are types of their own.
 #include "base/limits.h"
+#include "frontend/sema/collection.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
@@ -81,12 +82,13 @@ std::optional<TypeUse> Sema::find_type(std::string_view name) {
     return TypeUse{program.types.elementary(ir::Kind::kBool), {}};
   }
   bool declared_pou = declared.pou_names.contains(name);
-  if (!declared_pou && !declared.types.contains(name)) use_library_type(name);
+  if (!declared_pou && !declared.types.contains(name)) ask<Collection>().use_library_type(name);
   if (auto known = declared.types.find(name); known != declared.types.end()) {
     Within global(*this, kNoPou);
     return resolve_type(known->second);
   }
-  if (!declared.pou_names.contains(name) && !use_library(name)) return std::nullopt;
+  if (!declared.pou_names.contains(name) && !ask<Collection>().use_library(name))
+    return std::nullopt;
   const PouInfo& pou = declared.pous[declared.pou_names.find(name)->second];
   if (!pou.self.valid()) return std::nullopt;
   // A variable of an interface refers to what implements it.

@@ -1,7 +1,10 @@
 // First pass: every name that a declaration brings into the world, nothing resolved.
+#include "frontend/sema/collection.h"
+#include "frontend/sema/configuration.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/test_build.h"
 
 namespace frontend {
 namespace {
@@ -37,146 +40,150 @@ ir::Kind instance_kind(PouKind kind) {
 
 }  // namespace
 
-void Sema::collect() {
-  choose_resource();
+void Collection::collect() {
+  ask<Configuration>().choose_resource();
   collect_pous();
-  if (for_tests()) collect_tests();
+  if (sema_.for_tests()) ask<TestBuild>().collect_tests();
   collect_types();
-  for (const VarBlock& block : tree.globals) collect_globals(block, list_of(block));
-  for (const ConfigDecl& config : tree.configs) {
-    if (tree.in_namespace(config.scope)) {
+  for (const VarBlock& block : sema_.tree.globals) collect_globals(block, list_of(block));
+  for (const ConfigDecl& config : sema_.tree.configs) {
+    if (sema_.tree.in_namespace(config.scope)) {
       error(DiagnosticCode::kNotInNamespace, config.name.span,
             "a CONFIGURATION stands in a namespace", "put it outside");
     }
     collect_globals(config.globals, config.name.text);
-    if (config.resources.size() > 1) declared.outer_globals = declared.global_order.size();
+    if (config.resources.size() > 1)
+      sema_.declared.outer_globals = sema_.declared.global_order.size();
     for (const ResourceDecl& resource : config.resources) {
-      if (&resource == declared.resource) collect_globals(resource.globals, resource.name.text);
+      if (&resource == sema_.declared.resource)
+        collect_globals(resource.globals, resource.name.text);
     }
   }
-  namespaces.check();
-  objects.inherit();
+  sema_.namespaces.check();
+  sema_.objects.inherit();
 }
 
-void Sema::collect_types() {
-  for (const TypeDecl& decl : tree.types) {
+void Collection::collect_types() {
+  for (const TypeDecl& decl : sema_.tree.types) {
     if (decl.name.empty() || !decl.spec.valid()) continue;
-    if (library.holds(decl.name.span)) {
+    if (sema_.library.holds(decl.name.span)) {
       collect_library_type(decl);
       continue;
     }
     const std::string_view name =
-        namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
-    if (!declared.types.emplace(name, decl.spec).second || declared.pou_names.contains(name)) {
+        sema_.namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
+    if (!sema_.declared.types.emplace(name, decl.spec).second ||
+        sema_.declared.pou_names.contains(name)) {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
             "`" + std::string(name) + "` is declared twice");
       continue;
     }
     declare_type(decl, name);
-    if (tree.find_attribute(decl.attributes, "qualified_only") != nullptr) continue;
+    if (sema_.tree.find_attribute(decl.attributes, "qualified_only") != nullptr) continue;
     collect_enumerators(decl.spec, decl.scope, decl.access);
   }
 }
 
-void Sema::declare_type(const TypeDecl& decl, std::string_view name) {
-  facts.specs[decl.spec.index].name = {name, decl.name.span};
-  facts.specs[decl.spec.index].default_value = decl.init;
+void Collection::declare_type(const TypeDecl& decl, std::string_view name) {
+  sema_.facts.specs[decl.spec.index].name = {name, decl.name.span};
+  sema_.facts.specs[decl.spec.index].default_value = decl.init;
   forward_declare(decl, name);
 }
 
-void Sema::collect_library_type(const TypeDecl& decl) {
-  library.types.emplace(decl.name.text, &decl);
-  for (const Enumerator& enumerator : tree[decl.spec].enumerators) {
-    library.literals.emplace(enumerator.name.text, &decl);
+void Collection::collect_library_type(const TypeDecl& decl) {
+  sema_.library.types.emplace(decl.name.text, &decl);
+  for (const Enumerator& enumerator : sema_.tree[decl.spec].enumerators) {
+    sema_.library.literals.emplace(enumerator.name.text, &decl);
   }
 }
 
 // Library types enter the program when their name, or a literal that nobody else has, is first
 // used.
-bool Sema::use_library_type(std::string_view name) {
-  auto found = library.types.find(name);
-  if (found == library.types.end() || declared.types.contains(name)) return false;
+bool Collection::use_library_type(std::string_view name) {
+  auto found = sema_.library.types.find(name);
+  if (found == sema_.library.types.end() || sema_.declared.types.contains(name)) return false;
   const TypeDecl& decl = *found->second;
-  declared.types.emplace(decl.name.text, decl.spec);
+  sema_.declared.types.emplace(decl.name.text, decl.spec);
   declare_type(decl, decl.name.text);
   return true;
 }
 
-bool Sema::use_library_literal(std::string_view name) {
-  auto found = library.literals.find(name);
-  if (found == library.literals.end()) return false;
+bool Collection::use_library_literal(std::string_view name) {
+  auto found = sema_.library.literals.find(name);
+  if (found == sema_.library.literals.end()) return false;
   const TypeDecl& decl = *found->second;
   use_library_type(decl.name.text);
-  if (declared.types.find(decl.name.text)->second != decl.spec) return false;
-  const auto& enumerators = tree[decl.spec].enumerators;
+  if (sema_.declared.types.find(decl.name.text)->second != decl.spec) return false;
+  const auto& enumerators = sema_.tree[decl.spec].enumerators;
   for (uint32_t i = 0; i < enumerators.size(); ++i) {
     if (ir::same_name(enumerators[i].name.text, name)) {
-      declared.literals[enumerators[i].name.text].push_back({decl.spec, i});
+      sema_.declared.literals[enumerators[i].name.text].push_back({decl.spec, i});
     }
   }
   return true;
 }
 
 // References may lead to a structure whose content is not known yet.
-void Sema::forward_declare(const TypeDecl& decl, std::string_view name) {
-  const SpecKind kind = tree[decl.spec].kind;
+void Collection::forward_declare(const TypeDecl& decl, std::string_view name) {
+  const SpecKind kind = sema_.tree[decl.spec].kind;
   if (kind != SpecKind::kStruct && kind != SpecKind::kUnion) return;
   ir::Type type;
   type.kind = kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
   type.name = name;
-  facts.specs[decl.spec.index].forward = program.types.declare(std::move(type));
+  sema_.facts.specs[decl.spec.index].forward = sema_.program.types.declare(std::move(type));
 }
 
-void Sema::collect_enumerators(SpecId spec, ScopeId scope, Access access) {
+void Collection::collect_enumerators(SpecId spec, ScopeId scope, Access access) {
   if (!spec.valid()) return;
-  const Spec& content = tree[spec];
+  const Spec& content = sema_.tree[spec];
   for (uint32_t i = 0; i < content.enumerators.size(); ++i) {
     const Name& name = content.enumerators[i].name;
-    declared.literals[namespaces.declare(NameSort::kLiteral, scope, name, access)].push_back(
-        {spec, i});
+    sema_.declared.literals[sema_.namespaces.declare(NameSort::kLiteral, scope, name, access)]
+        .push_back({spec, i});
   }
 }
 
 // `name`: by which the scope knows it, when that is not its own.
-VarId Sema::add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name) {
-  VarId id(static_cast<uint32_t>(declared.variables.size()));
+VarId Collection::add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name) {
+  VarId id(static_cast<uint32_t>(sema_.declared.variables.size()));
   if (name.empty()) name = variable.name.text;
   if (!scope.emplace(name, id).second) {
-    const Variable& first = declared.variables[scope[name].index];
+    const Variable& first = sema_.declared.variables[scope[name].index];
     std::string where = first.decl == nullptr
                             ? "the function's result has the function's name"
                             : "first declared in line " +
-                                  std::to_string(sources.locate(first.name.span.begin).line);
+                                  std::to_string(sema_.sources.locate(first.name.span.begin).line);
     error(DiagnosticCode::kDuplicateName, variable.name.span,
           "`" + std::string(name) + "` is declared twice; " + where);
     return {};
   }
-  declared.variables.push_back(variable);
+  sema_.declared.variables.push_back(variable);
   return id;
 }
 
-void Sema::collect_pous() {
-  for (const PouDecl& decl : tree.pous) {
+void Collection::collect_pous() {
+  for (const PouDecl& decl : sema_.tree.pous) {
     if (decl.name.empty()) continue;
-    if (library.holds(decl.span)) {
-      library.pous.emplace(decl.name.text, &decl);
+    if (sema_.library.holds(decl.span)) {
+      sema_.library.pous.emplace(decl.name.text, &decl);
       continue;
     }
-    if (decl.kind == PouKind::kProgram && tree.in_namespace(decl.scope)) {
+    if (decl.kind == PouKind::kProgram && sema_.tree.in_namespace(decl.scope)) {
       error(DiagnosticCode::kNotInNamespace, decl.name.span, "a PROGRAM stands in a namespace",
             "put it outside, with USING for the names of the namespace");
       continue;
     }
     const std::string_view name =
-        namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
-    const auto same = declared.pou_names.find(name);
-    if (same == declared.pou_names.end()) {
+        sema_.namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
+    const auto same = sema_.declared.pou_names.find(name);
+    if (same == sema_.declared.pou_names.end()) {
       add_pou(decl, false, name);
     } else if (decl.kind == PouKind::kFunction &&
-               declared.pous[same->second].decl->kind == PouKind::kFunction) {
+               sema_.declared.pous[same->second].decl->kind == PouKind::kFunction) {
       uint32_t last = same->second;
-      while (declared.pous[last].overload != kNoPou) last = declared.pous[last].overload;
-      declared.pous[last].overload = static_cast<uint32_t>(declared.pous.size());
+      while (sema_.declared.pous[last].overload != kNoPou)
+        last = sema_.declared.pous[last].overload;
+      sema_.declared.pous[last].overload = static_cast<uint32_t>(sema_.declared.pous.size());
       add_pou(decl, false, name);
     } else {
       error(DiagnosticCode::kDuplicateName, decl.name.span,
@@ -185,27 +192,28 @@ void Sema::collect_pous() {
   }
 }
 
-uint32_t Sema::add_pou(const PouDecl& decl, bool of_library, std::string_view name) {
-  uint32_t number = static_cast<uint32_t>(declared.pous.size());
-  PouInfo& info = declared.pous.emplace_back();
+uint32_t Collection::add_pou(const PouDecl& decl, bool of_library, std::string_view name) {
+  uint32_t number = static_cast<uint32_t>(sema_.declared.pous.size());
+  PouInfo& info = sema_.declared.pous.emplace_back();
   info.number = number;
   info.decl = &decl;
   info.name = name;
   info.library = of_library;
   info.open = is_open(decl);
-  info.as_block = for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
-  if (const std::string rule = renamed_from(tree, decl.attributes); !rule.empty()) {
-    info.old_name = declared.keep_name(whole_old_names(name, rule));
+  info.as_block =
+      sema_.for_tests() && decl.kind == PouKind::kProgram && !name.starts_with(kMadePrefix);
+  if (const std::string rule = renamed_from(sema_.tree, decl.attributes); !rule.empty()) {
+    info.old_name = sema_.declared.keep_name(whole_old_names(name, rule));
   }
-  declared.pou_names.emplace(name, number);
+  sema_.declared.pou_names.emplace(name, number);
   if (!has_frame(decl.kind)) {
     ir::Type type;
     type.kind = instance_kind(decl.kind);
     type.name = name;
-    type.old_name = OldNames(*this).add(std::string(info.old_name));
+    type.old_name = OldNames(sema_).add(std::string(info.old_name));
     if (info.as_block) type.kind = ir::Kind::kFunctionBlock;
-    info.self = program.types.declare(std::move(type));
-    declared.pou_by_type.emplace(info.self, number);
+    info.self = sema_.program.types.declare(std::move(type));
+    sema_.declared.pou_by_type.emplace(info.self, number);
   }
   if (!info.open && decl.kind != PouKind::kInterface) add_code(info, std::string(name));
   collect_interface(number);
@@ -213,17 +221,17 @@ uint32_t Sema::add_pou(const PouDecl& decl, bool of_library, std::string_view na
   return number;
 }
 
-void Sema::add_code(PouInfo& info, std::string name) {
-  info.id = ir::PouId(static_cast<uint32_t>(program.pous.size()));
-  ir::Pou& pou = program.pous.emplace_back();
+void Collection::add_code(PouInfo& info, std::string name) {
+  info.id = ir::PouId(static_cast<uint32_t>(sema_.program.pous.size()));
+  ir::Pou& pou = sema_.program.pous.emplace_back();
   pou.name = std::move(name);
   pou.kind = info.as_block ? ir::PouKind::kFunctionBlock : ir_kind(info.decl->kind);
   pou.self = info.self;
-  pou.recursion_depth = objects.recursion_depth(*info.decl);
+  pou.recursion_depth = sema_.objects.recursion_depth(*info.decl);
 }
 
-void Sema::collect_interface(uint32_t number) {
-  PouInfo& info = declared.pous[number];
+void Collection::collect_interface(uint32_t number) {
+  PouInfo& info = sema_.declared.pous[number];
   const PouDecl& decl = *info.decl;
   for (const VarBlock& block : decl.blocks) collect_variables(number, block);
   if (has_frame(decl.kind) && decl.result.valid()) {
@@ -236,25 +244,25 @@ void Sema::collect_interface(uint32_t number) {
     if (id.valid()) info.variables.push_back(id);
     if (decl.kind != PouKind::kSetter) info.result = id;
   }
-  objects.collect(number);
+  sema_.objects.collect(number);
   number_variables(info);
 }
 
 // For a program instance with code of its own: the variable of all instances that shares its place.
-VarId Sema::shared_by_original(const PouInfo& info, const Variable& variable) const {
+VarId Collection::shared_by_original(const PouInfo& info, const Variable& variable) const {
   if (info.meaning == nullptr || !variable.decl->has_address) return {};
-  for (const PouInfo& original : declared.pous) {
+  for (const PouInfo& original : sema_.declared.pous) {
     if (original.decl != info.decl || original.meaning != nullptr) continue;
     const auto found = original.names.find(variable.name.text);
     const bool shared = found != original.names.end() &&
-                        declared.variables[found->second.index].storage == Storage::kGlobal;
+                        sema_.declared.variables[found->second.index].storage == Storage::kGlobal;
     return shared ? VarId(found->second) : VarId();
   }
   return {};
 }
 
-void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
-  PouInfo& info = declared.pous[pou];
+void Collection::collect_variables(uint32_t pou, const VarBlock& block) {
+  PouInfo& info = sema_.declared.pous[pou];
   if (block.section == VarSection::kAccess) return;
   if (block.section == VarSection::kStatic) allow_extension("VAR_STAT", block.span);
   for (const VarDecl& decl : block.vars) {
@@ -293,7 +301,7 @@ void Sema::collect_variables(uint32_t pou, const VarBlock& block) {
 // Members of an instance, or locals of a frame: parameters first, then the result.
 // Actions see the VAR_TEMP of the body that calls them, so these are members then, which the
 // body makes anew.
-void Sema::number_variables(PouInfo& info) {
+void Collection::number_variables(PouInfo& info) {
   bool function = has_frame(info.decl->kind);
   const std::vector<PouDecl>& members = info.decl->members;
   info.shares_temporaries =
@@ -303,22 +311,23 @@ void Sema::number_variables(PouInfo& info) {
   info.locals.clear();
   info.members.clear();
   auto place = [&](VarId id, Storage storage, std::vector<VarId>& order) {
-    declared.variables[id.index].storage = storage;
-    declared.variables[id.index].index = static_cast<uint32_t>(order.size());
+    sema_.declared.variables[id.index].storage = storage;
+    sema_.declared.variables[id.index].index = static_cast<uint32_t>(order.size());
     order.push_back(id);
   };
   if (function) {
     for (VarId id : info.variables) {
-      if (id != info.result && is_parameter(declared.variables[id.index].section)) {
+      if (id != info.result && is_parameter(sema_.declared.variables[id.index].section)) {
         place(id, Storage::kLocal, info.locals);
       }
     }
     if (info.result.valid()) place(info.result, Storage::kLocal, info.locals);
   }
   for (VarId id : info.variables) {
-    VarSection section = declared.variables[id.index].section;
+    VarSection section = sema_.declared.variables[id.index].section;
     if (section == VarSection::kExternal || id == info.result) continue;
-    if (declared.variables[id.index].storage == Storage::kGlobal) continue;  // it shares bytes
+    if (sema_.declared.variables[id.index].storage == Storage::kGlobal)
+      continue;  // it shares bytes
     if (function && is_parameter(section)) continue;
     bool local = function || (section == VarSection::kTemp && !info.shares_temporaries);
     place(id, local ? Storage::kLocal : Storage::kMember, local ? info.locals : info.members);
@@ -326,7 +335,7 @@ void Sema::number_variables(PouInfo& info) {
 }
 
 // CTU_DINT has the aliases of CTU.
-void Sema::add_aliases(PouInfo& info) {
+void Collection::add_aliases(PouInfo& info) {
   std::string_view name = info.decl->name.text;
   for (const stdlib::AliasRow& row : stdlib::alias_rows()) {
     bool variant = name.size() > row.block.size() && name[row.block.size()] == '_';
@@ -340,60 +349,12 @@ void Sema::add_aliases(PouInfo& info) {
 }
 
 // Library POUs enter the program when their name is first used.
-bool Sema::use_library(std::string_view name) {
-  auto found = library.pous.find(name);
-  if (found == library.pous.end() || declared.pou_names.contains(name)) return false;
+bool Collection::use_library(std::string_view name) {
+  auto found = sema_.library.pous.find(name);
+  if (found == sema_.library.pous.end() || sema_.declared.pou_names.contains(name)) return false;
   uint32_t number = add_pou(*found->second, true, found->first);
-  if (declared.complete) resolve_interface(number);  // a function first met in a body
+  if (sema_.declared.complete) sema_.resolve_interface(number);  // a function first met in a body
   return true;
-}
-
-// Covers functions and methods; a prototype has no body that could assign.
-static void report_unassigned_results(Sema& sema) {
-  for (const PouInfo& pou : sema.declared.pous) {
-    if (pou.library || pou.open || pou.made != MadeCode::kNone || !pou.result.valid()) continue;
-    const PouKind kind = pou.decl->kind;
-    if (kind != PouKind::kFunction && kind != PouKind::kMethod) continue;
-    const bool prototype =
-        pou.owner != kNoPou &&
-        (pou.decl->is_abstract || sema.declared.pous[pou.owner].decl->kind == PouKind::kInterface);
-    if (prototype || sema.resolve(pou.result).written) continue;
-    sema.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
-                 "`" + std::string(pou.decl->name.text) + "` never assigns its result",
-                 "assign it: `" + std::string(pou.decl->name.text) + " := ...`");
-  }
-}
-
-// After errors much is unused that will not stay so.
-void Sema::report_unused() {
-  // Values that stay what their type begins with. Retained ones may come from somewhere.
-  auto never_written = [this](const Variable& variable) {
-    return !variable.written && !variable.constant && !variable.retain && !variable.hidden &&
-           !variable.decl->init.valid() && variable.type.valid() &&
-           program.types.is_scalar(variable.type) && !program.types.is_reference(variable.type) &&
-           !program.types[variable.type].init.valid();
-  };
-  if (report.has_hard_errors()) return;
-  report_unassigned_results(*this);
-  for (const Variable& variable : declared.variables) {
-    bool private_section = variable.section == VarSection::kLocal ||
-                           variable.section == VarSection::kTemp ||
-                           variable.section == VarSection::kStatic;
-    if (variable.access == Access::kPublic) continue;  // as an output
-    if (!private_section || variable.decl == nullptr) continue;
-    if (variable.decl->has_address || variable.decl->implied) continue;
-    if (variable.pou != kNoPou && declared.pous[variable.pou].open) continue;
-    if (variable.used) {
-      if (never_written(variable)) {
-        warning(DiagnosticCode::kNeverWritten, variable.name.span,
-                "`" + std::string(variable.name.text) + "` is read, but nothing here writes it",
-                "give it an initial value, if that is what it is for");
-      }
-      continue;
-    }
-    warning(DiagnosticCode::kUnusedVariable, variable.name.span,
-            "`" + std::string(variable.name.text) + "` is never used");
-  }
 }
 
 }  // namespace frontend

@@ -1,0 +1,11 @@
+// Check after all bodies: warns of what is declared and never used, read and never written, or left
+// without a result. Reads the declarations, which bodies have marked; writes messages only.
+#pragma once
+
+namespace frontend {
+
+class Sema;
+
+void report_unused(Sema& sema);
+
+}  // namespace frontend
