@@ -1,5 +1,6 @@
 // Arguments of POUs: which goes to which parameter.
 #include "frontend/lower/call.h"
+#include "frontend/sema/calls.h"
 
 namespace frontend {
 
@@ -26,7 +27,7 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
 }
 
 bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
-  if (sema_.is_enable(arg, &callee)) return true;
+  if (sema_.ask<Calls>().is_enable(arg, &callee)) return true;
   const VarId found = sema_.objects.find_parameter(callee, arg.name.text);
   const bool known = found.valid() && found != callee.result;
   const Variable* variable = known ? &sema_.resolve(found) : nullptr;

@@ -1,6 +1,7 @@
 // Assignments, also as expressions: `a := b := 3`, `x S= y`. The indices of the left side
 // are evaluated first, then the value.
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
 
 namespace frontend {
 
@@ -103,7 +104,7 @@ void Body::assign_aggregate(const Target& to, ExprId value) {
     return;
   }
   if (expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit) {
-    ir::ConstId init = sema_.initial_value(value, to.type, {}, Known::kByCall);
+    ir::ConstId init = sema_.ask<Constants>().initial_value(value, to.type, {}, Known::kByCall);
     if (init.valid()) build_.init(to.place, init);
     return;
   }
@@ -117,8 +118,8 @@ void Body::assign_aggregate(const Target& to, ExprId value) {
     return;
   }
   if (strings && note.constant) {  // says so when the text is too long
-    auto text = sema_.fold(value, to.type);
-    if (!text || !sema_.fit_text(*text, to.type, expr.span)) return;
+    auto text = sema_.ask<Constants>().fold(value, to.type);
+    if (!text || !sema_.ask<Constants>().fit_text(*text, to.type, expr.span)) return;
   }
   ir::Place from = place(value);
   build_.copy(to.place, from);

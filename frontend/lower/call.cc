@@ -1,6 +1,8 @@
 // Calls of functions and function block instances, by the call discipline of
 // ir/program/ir.h: everything is evaluated first, then passed, then called.
 #include "frontend/lower/call.h"
+#include "frontend/sema/constants.h"
+#include "frontend/sema/standard_calls.h"
 
 namespace frontend {
 namespace {
@@ -28,7 +30,7 @@ void Body::evaluate_input(Binding& binding, bool keep) {
     ir::Place list;
     list.base = ir::PlaceBase::kConst;
     list.base_type = list.type = parameter.type;
-    list.constant = sema_.initial_value(id, parameter.type, {}, Known::kByCall);
+    list.constant = sema_.ask<Constants>().initial_value(id, parameter.type, {}, Known::kByCall);
     if (list.constant.valid()) binding.place = list;
     return;
   }
@@ -347,7 +349,7 @@ ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId ty
   }
   if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);
   if (callee.kind != Callee::Kind::kStandard) return temporary_place(type);
-  std::vector<ExprId> args = sema_.standard_arguments(expr, *callee.row);
+  std::vector<ExprId> args = sema_.ask<StandardCalls>().standard_arguments(expr, *callee.row);
   using stdlib::FunctionRule;
   switch (callee.row->rule) {
     case FunctionRule::kMove:

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -106,8 +107,8 @@ std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId ty
     const CaseArm& arm = tree_.cases[stmt.arms.first + i];
     for (uint32_t k = 0; k < arm.labels.count; ++k) {
       const CaseLabel& label = tree_.labels[arm.labels.first + k];
-      auto low = sema_.fold_bits(label.low, type);
-      auto high = label.high.valid() ? sema_.fold_bits(label.high, type) : low;
+      auto low = sema_.ask<Constants>().fold_bits(label.low, type);
+      auto high = label.high.valid() ? sema_.ask<Constants>().fold_bits(label.high, type) : low;
       if (!low || !high) continue;
       base::SourceSpan span = tree_[label.low].span;
       if (wide_of(*low) > wide_of(*high)) {

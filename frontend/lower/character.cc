@@ -1,5 +1,6 @@
 // Characters of strings: s[i]. Positions are checked against the capacity.
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
 
 namespace frontend {
 
@@ -16,7 +17,7 @@ ir::ValueId Body::character_position(const Expr& expr) {
   ExprId index = tree_.expr_lists[expr.list.first];
   int64_t first = sema_.options.dialect == Dialect::kIec ? 1 : 0;
   if (sema_.infer(index).constant) {
-    int64_t position = sema_.fold_integer(index).value_or(first) - first;
+    int64_t position = sema_.ask<Constants>().fold_integer(index).value_or(first) - first;
     return build_.constant(kI64, static_cast<uint64_t>(position));
   }
   uint32_t capacity = types()[sema_.infer(expr.operand).type].capacity;

@@ -2,6 +2,7 @@
 // docs/LANGUAGE.md: reals round half to even and trap when out of range,
 // integers keep their low bits, times count in the unit of their type.
 #include "frontend/lower/body.h"
+#include "frontend/sema/calls.h"
 #include "frontend/sema/width.h"
 #include "ir/types/time_units.h"
 
@@ -177,7 +178,7 @@ ir::ValueId Body::time_to_time(Typed from, ir::TypeId to) {
 }
 
 ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion) {
-  ExprId argument = sema_.conversion_argument(expr);
+  ExprId argument = sema_.ask<Calls>().conversion_argument(expr);
   ir::TypeId to = elementary(conversion.to);
   const Note& note = sema_.infer(argument);
   bool named = !conversion.any_source && ir::is_elementary(conversion.from);

@@ -3,6 +3,7 @@
 // result is the default of its type. The same when the call, or an argument of it, traps and ENO is
 // connected. Who declares parameters of these names has them.
 #include "frontend/lower/enable.h"
+#include "frontend/sema/calls.h"
 
 namespace frontend {
 
@@ -11,7 +12,7 @@ std::optional<Body::Enable> Body::enable_of(const Expr& call, const Callee& call
   Enable enable;
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
-    if (!sema_.is_enable(arg, pou)) continue;
+    if (!sema_.ask<Calls>().is_enable(arg, pou)) continue;
     const Arg*& slot = ir::same_name(arg.name.text, "EN") ? enable.en : enable.eno;
     bool output = &slot == &enable.eno;
     if (arg.output != output || slot != nullptr || (arg.negated && !output)) {
@@ -85,7 +86,7 @@ uint64_t Body::default_bits(ir::TypeId type) const {
 }
 
 ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
-  Callee callee = sema_.callee(expr);
+  Callee callee = sema_.ask<Calls>().callee(expr);
   auto enable = enable_of(expr, callee);
   if (!enable) return emit_call(expr, callee, own);
   open_enable(*enable);
@@ -104,7 +105,7 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
 // A result that is no scalar.
 ir::Place Body::call_place(ExprId id, const Expr& expr) {
   ir::TypeId type = sema_.infer(id).type;
-  Callee callee = sema_.callee(expr);
+  Callee callee = sema_.ask<Calls>().callee(expr);
   auto enable = enable_of(expr, callee);
   if (!enable) return call_place(expr, callee, type);
   ir::Place result = temporary_place(type);
@@ -118,7 +119,7 @@ ir::Place Body::call_place(ExprId id, const Expr& expr) {
 void Body::call_statement(const Stmt& stmt) {
   const Expr& call = tree_[stmt.value];
   if (call.kind != ExprKind::kCall) return bare_call(stmt.value);
-  Callee callee = sema_.callee(call);
+  Callee callee = sema_.ask<Calls>().callee(call);
   auto enable = enable_of(call, callee);
   if (!enable) return call_statement(stmt.value, callee);
   open_enable(*enable);

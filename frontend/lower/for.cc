@@ -2,6 +2,7 @@
 // correctly at the limits of its variable's type; step 0 traps; afterwards the
 // variable is last + step, except at the type's limit, where it stays.
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
 
 namespace frontend {
 
@@ -92,7 +93,7 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   loop.to = value(stmt.to, bound);
   loop.bound = scalar(bound);
   if (sema_.infer(stmt.to).type.valid() && sema_.infer(stmt.to).constant) {
-    if (auto known = sema_.fold(stmt.to, bound)) loop.constant_to = known->integer;
+    if (auto known = sema_.ask<Constants>().fold(stmt.to, bound)) loop.constant_to = known->integer;
   }
   for_step(stmt, loop);
   set_line(stmt.span);
@@ -106,7 +107,7 @@ void Body::for_step(const Stmt& stmt, ForLoop& loop) {
   const Note& note = sema_.infer(stmt.by);
   if (!note.type.valid()) return;
   if (note.constant) {
-    auto step = sema_.fold_integer(stmt.by);
+    auto step = sema_.ask<Constants>().fold_integer(stmt.by);
     if (!step) return;
     if (*step == 0) {
       sema_.error(DiagnosticCode::kZeroStep, tree_[stmt.by].span, "BY 0 would never end");

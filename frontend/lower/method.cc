@@ -2,6 +2,7 @@
 // ir/program/ir.h. Where the type of the instance is known, its method is called; a
 // reference, an interface variable or THIS may lead to a derived one that has another.
 #include "frontend/lower/call.h"
+#include "frontend/sema/calls.h"
 
 namespace frontend {
 
@@ -151,7 +152,7 @@ void Body::bare_call(ExprId id) {
   call.kind = ExprKind::kCall;
   call.span = expr.span;
   call.operand = id;
-  const Callee callee = sema_.callee(call);
+  const Callee callee = sema_.ask<Calls>().callee(call);
   if (callee.kind == Callee::Kind::kMethod) call_function(call, callee, false);
 }
 

@@ -1,4 +1,5 @@
 // Binary operators.
+#include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/width.h"
 
@@ -80,7 +81,8 @@ ir::ValueId Body::emit_lazy(const Expr& expr) {
 }
 
 ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
-  Note common = sema_.unify(sema_.infer(left), sema_.infer(right), tree_[left].span);
+  Note common =
+      sema_.ask<OperatorTypes>().unify(sema_.infer(left), sema_.infer(right), tree_[left].span);
   if (!common.type.valid()) return zero(elementary(ir::Kind::kBool));
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
   common.type = compared_type(sema_, common.type, {left, right});

@@ -3,6 +3,7 @@
 
 #include "frontend/lower/body.h"
 #include "frontend/sema/common_uses.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/width.h"
 
@@ -149,7 +150,7 @@ ir::Place Body::index_place(const Expr& expr) {
     ExprId index = tree_.expr_lists[expr.list.first + i];
     ir::Step at = step_to(ir::StepKind::kIndex);
     if (sema_.infer(index).constant) {
-      at.constant_index = sema_.fold_integer(index).value_or(0);
+      at.constant_index = sema_.ask<Constants>().fold_integer(index).value_or(0);
     } else {
       const auto& dim = types()[array].dims[i];
       const Expr& sum = tree_[index];
@@ -172,16 +173,16 @@ ir::Place Body::constant_place(ExprId id) {
   place.base = ir::PlaceBase::kConst;
   place.base_type = place.type = note.type;
   if (types().is_scalar(note.type)) {
-    auto bits = sema_.fold_bits(id, note.type, Known::kInitially);
+    auto bits = sema_.ask<Constants>().fold_bits(id, note.type, Known::kInitially);
     place.constant = sema_.program.constants.scalar(bits.value_or(0));
     return place;
   }
   if (!is_string(types(), note.type)) {
-    auto part = sema_.initial_part(id);
+    auto part = sema_.ask<Constants>().initial_part(id);
     if (part) place.constant = part->init;
     return place;
   }
-  auto text = sema_.fold(id, note.type, Known::kInitially);
+  auto text = sema_.ask<Constants>().fold(id, note.type, Known::kInitially);
   place.constant = sema_.program.constants.add({0, text ? text->text : std::string(), {}});
   return place;
 }

@@ -1,4 +1,5 @@
 #include "frontend/lower/pool_code.h"
+#include "frontend/sema/constants.h"
 
 namespace frontend {
 namespace {
@@ -182,7 +183,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
     const ir::Member& member = type.members[i];
-    const ir::ConstId given = sema_.listed(init, i);
+    const ir::ConstId given = sema_.ask<Constants>().listed(init, i);
     if (instance && !given.valid()) continue;
     reset(part(inside, ir::StepKind::kMember, i, member.type), member.type,
           given.valid() ? given : member.init);

@@ -1,6 +1,10 @@
 // Pointers and references in bodies, by the shapes of "References" in ir/program/ir.h.
 #include "frontend/lower/body.h"
 #include "frontend/lower/pool_code.h"
+#include "frontend/sema/calls.h"
+#include "frontend/sema/constants.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
 
 namespace frontend {
 namespace {
@@ -91,7 +95,8 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
   const ir::Type& reference = types()[target];
   if (!note.type.valid()) return zero(target);
   const bool zero_literal = note.constant && note.flex == Flex::kInteger &&
-                            sema_.options.dialect != Dialect::kIec && sema_.fold_integer(id) == 0;
+                            sema_.options.dialect != Dialect::kIec &&
+                            sema_.ask<Constants>().fold_integer(id) == 0;
   if ((note.constant && note.flex == Flex::kNull) || zero_literal) {
     return build_.constant(ir::Scalar::kU64, 0);
   }
@@ -142,8 +147,8 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
     case ReferenceCall::kQuery:
       return attempt(tree_.args[expr.list.first + 1].value, argument, expr.span).fits;
     case ReferenceCall::kSizeof:
-      return machine_convert(build_.size_of(sema_.type_of_argument(argument)), ir::Scalar::kU32,
-                             scalar(own));
+      return machine_convert(build_.size_of(sema_.ask<Calls>().type_of_argument(argument)),
+                             ir::Scalar::kU32, scalar(own));
     case ReferenceCall::kIsValid: {
       const bool raw = sema_.infer(argument).reference.valid();
       const ir::ValueId handle = raw ? raw_reference(argument) : natural(argument).value;
@@ -209,7 +214,7 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
   const bool reference_target = types().is_reference(to);
   const bool codesys = sema_.options.dialect != Dialect::kIec;
   if (reference_source && reference_target) {
-    if (sema_.reference_fits(from.type, to)) {
+    if (sema_.ask<OperatorTypes>().reference_fits(from.type, to)) {
       return is_instance_view(types(), from.type, to) ? whole_instance(build_, from.value)
                                                       : from.value;
     }
@@ -247,7 +252,7 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
 // A constant where a pointer is wanted: NULL, 0, or an address.
 ir::ValueId Body::constant_reference(ExprId id) {
   if (sema_.infer(id).flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
-  const auto bits = sema_.fold_bits(id, elementary(ir::Kind::kLword));
+  const auto bits = sema_.ask<Constants>().fold_bits(id, elementary(ir::Kind::kLword));
   if (!bits || *bits == 0) return build_.constant(ir::Scalar::kU64, 0);
   if (*bits > 0xffffffffu) return build_.constant(ir::Scalar::kU64, *bits);
   return build_.unflat(build_.constant(ir::Scalar::kU32, *bits));

@@ -2,6 +2,9 @@
 #include <algorithm>
 
 #include "frontend/lower/body.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
+#include "frontend/sema/standard_calls.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -53,7 +56,7 @@ ir::Op shift_op(FunctionId id) {
 
 ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own) {
   const stdlib::FunctionRow& row = *callee.row;
-  std::vector<ExprId> args = sema_.standard_arguments(expr, row);
+  std::vector<ExprId> args = sema_.ask<StandardCalls>().standard_arguments(expr, row);
   switch (row.rule) {
     case FunctionRule::kClock:
       return build_.task_time();
@@ -97,8 +100,9 @@ ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::Type
     case FunctionRule::kMux:
       return multiplex(args, own);
     case FunctionRule::kCompare:
-      return compare_chain(args, standard_operator(row.id),
-                           callee.typed.valid() ? callee.typed : sema_.infer_common(args).type);
+      return compare_chain(
+          args, standard_operator(row.id),
+          callee.typed.valid() ? callee.typed : sema_.ask<OperatorTypes>().infer_common(args).type);
     case FunctionRule::kStringNumber:
       return string_number(args, row);
     case FunctionRule::kString:

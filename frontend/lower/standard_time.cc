@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "frontend/lower/body.h"
+#include "frontend/sema/standard_calls.h"
 
 namespace frontend {
 namespace {
@@ -78,7 +79,7 @@ ir::ValueId Body::day_of_week(ExprId moment) {
 
 // SPLIT_DATE(IN := d, YEAR => y, ...): a statement.
 void Body::split(const Expr& call, const stdlib::FunctionRow& row) {
-  std::vector<ExprId> args = sema_.standard_arguments(call, row);
+  std::vector<ExprId> args = sema_.ask<StandardCalls>().standard_arguments(call, row);
   if (args.empty() || !sema_.infer(args[0]).type.valid()) return;
   ir::ValueId ns = value(args[0], elementary(*kind_of_name(stdlib::operand_type(row, 0))));
   std::vector<std::optional<Target>> targets(args.size());

@@ -1,4 +1,5 @@
 #include "frontend/lower/start_code.h"
+#include "frontend/sema/constants.h"
 
 #include "frontend/lower/call.h"
 #include "frontend/lower/pool_code.h"
@@ -68,7 +69,7 @@ void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId 
     });
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
-    const ir::ConstId given = sema_.listed(init, i);
+    const ir::ConstId given = sema_.ask<Constants>().listed(init, i);
     if (!ir::is_structure(type.kind) && !given.valid()) continue;  // a matter of the block
     ir::Place member = at;
     if (!ir::is_structure(type.kind)) member.steps.push_back(step_to(ir::StepKind::kEnter));
@@ -92,7 +93,7 @@ void StartCode::each_element(const ir::Place& at, ir::TypeId id, ir::ConstId ini
     return loop(at, type.dims, 0, type.base, [&](const ir::Place& one) { each(one, value); });
   }
   for (uint64_t i = 0; i < total; ++i) {
-    each(element(at, type.dims, type.base, i), sema_.listed(init, i));
+    each(element(at, type.dims, type.base, i), sema_.ask<Constants>().listed(init, i));
   }
 }
 

@@ -1,5 +1,6 @@
 // Statements without a file of their own.
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
 
 namespace frontend {
 
@@ -115,7 +116,7 @@ void Body::leave_loops() {
 void Body::check_end(ExprId condition, bool goes_on) {
   const Note& note = sema_.infer(condition);
   if (!note.constant || !note.type.valid() || !traits_of(types(), note.type).boolean) return;
-  const auto value = sema_.fold(condition, elementary(ir::Kind::kBool));
+  const auto value = sema_.ask<Constants>().fold(condition, elementary(ir::Kind::kBool));
   if (!value || (value->integer != 0) != goes_on) return;
   sema_.warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,
                 std::string("this loop never ends: its condition is always ") +

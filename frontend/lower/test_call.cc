@@ -1,6 +1,9 @@
 // Assertions and the other calls of tests. A failed assertion leaves its message in a global
 // and traps, which ends the test; stc test shows both.
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -91,7 +94,8 @@ bool Body::is_time_ahead(ExprId duration) {
   const bool time = traits_of(types(), note.type).duration;
   const bool back =
       time && note.constant &&
-      static_cast<int64_t>(sema_.fold_bits(duration, elementary(ir::Kind::kLtime)).value_or(0)) < 0;
+      static_cast<int64_t>(
+          sema_.ask<Constants>().fold_bits(duration, elementary(ir::Kind::kLtime)).value_or(0)) < 0;
   if (time && !back) return true;
   sema_.error(DiagnosticCode::kWrongArgument, tree_[duration].span,
               back ? std::string("time does not go back")
@@ -115,7 +119,8 @@ void Body::advance_time(ExprId duration) {
 
 void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {
   const Relation relation = relation_of(call);
-  const Note common = sema_.unify(sema_.infer(args[0]), sema_.infer(args[1]), tree_[args[1]].span);
+  const Note common = sema_.ask<OperatorTypes>().unify(sema_.infer(args[0]), sema_.infer(args[1]),
+                                                       tree_[args[1]].span);
   if (!common.type.valid()) return;
   std::function<ir::Place()> actual;
   std::function<ir::Place()> expected;

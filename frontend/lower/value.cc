@@ -1,5 +1,6 @@
 // Scalar values of expressions, in the type that their place asks for.
 #include "frontend/lower/body.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/operand_warnings.h"
 
 namespace frontend {
@@ -76,7 +77,8 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
     return interface_value(id, target);
   }
   if (is_known(note)) {
-    auto bits = sema_.fold_bits(id, target, evaluating_ ? Known::kInitially : Known::kConstant);
+    auto bits = sema_.ask<Constants>().fold_bits(
+        id, target, evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     return bits ? build_.constant(scalar(target), *bits) : zero(target);
   }

@@ -3,6 +3,7 @@
 // variable, `+`, `-`, `*` and the bitwise operators give the same bits in its type, so the code is
 // that of an operation in that type.
 #include "frontend/sema/width.h"
+#include "frontend/sema/constants.h"
 
 #include "frontend/lower/body.h"
 #include "frontend/sema/operators.h"
@@ -58,8 +59,8 @@ ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
   const Expr& expr = tree_[id];
   const ir::Scalar machine = scalar(type);
   if (is_known(note)) {
-    const auto known = sema_.fold(id, elementary(ir::Kind::kDint),
-                                  evaluating_ ? Known::kInitially : Known::kConstant);
+    const auto known = sema_.ask<Constants>().fold(
+        id, elementary(ir::Kind::kDint), evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     const Wide number = known ? wrap_to(machine, known->integer) : 0;
     return build_.constant(machine, static_cast<uint64_t>(number));

@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "frontend/sema/collection.h"
 #include "frontend/sema/configuration.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/instance_paths.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/quoted.h"
@@ -237,7 +238,8 @@ ir::ConstId Configuration::program_arguments(const ProgramDecl& decl, const PouI
       connections.push_back({found->second, decl.args.first + i});
       continue;
     }
-    ir::ConstId init = sema_.initial_value(arg.value, variable->type, variable->init);
+    ir::ConstId init =
+        sema_.ask<Constants>().initial_value(arg.value, variable->type, variable->init);
     if (init.valid()) value.elements.push_back({variable->index, 1, init});
   }
   if (value.elements.empty()) return {};

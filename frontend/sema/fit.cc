@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "frontend/sema/constants.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/width.h"
 
@@ -26,14 +27,15 @@ uint64_t real_bits(ir::Scalar scalar, double value) {
 
 }  // namespace
 
-std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base::SourceSpan span) {
-  const ir::TypeTable& types = program.types;
+std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
+                                       base::SourceSpan span) {
+  const ir::TypeTable& types = sema_.program.types;
   Traits to = traits_of(types, target);
   auto mismatch = [&]() -> std::optional<uint64_t> {
-    std::string what =
-        value.flex == Flex::kNone ? "`" + report.type_text(value.type) + "`" : value_text(value);
+    std::string what = value.flex == Flex::kNone ? "`" + sema_.report.type_text(value.type) + "`"
+                                                 : value_text(value);
     error(DiagnosticCode::kTypeMismatch, span,
-          what + " does not go with `" + report.type_text(target) + "`");
+          what + " does not go with `" + sema_.report.type_text(target) + "`");
     return std::nullopt;
   };
   if (!types.is_scalar(target)) return mismatch();
@@ -47,13 +49,14 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
   }
   bool typed = value.flex == Flex::kNone;
   bool same = typed && without_range(types, value.type) == without_range(types, target);
-  if (typed && !same && implicit_fit(types, value.type, target, options.dialect) == Fit::kNone) {
+  if (typed && !same &&
+      implicit_fit(types, value.type, target, sema_.options.dialect) == Fit::kNone) {
     return mismatch();
   }
   if (value.flex == Flex::kEnum && !is_enum(types, target)) return mismatch();
   if (!typed && value.flex != Flex::kEnum) {
-    bool enumeration = to.enumeration && options.dialect != Dialect::kIec;
-    bool bit = to.boolean && options.dialect != Dialect::kIec &&
+    bool enumeration = to.enumeration && sema_.options.dialect != Dialect::kIec;
+    bool bit = to.boolean && sema_.options.dialect != Dialect::kIec &&
                (value.integer == 0 || value.integer == 1);
     bool number = to.number() || to.bits || enumeration || bit;
     if (!number || (value.form == Constant::Form::kReal && !to.real)) {
@@ -67,7 +70,7 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
                     !std::isfinite(static_cast<float>(real));
     if (!overflow) return real_bits(scalar, real);
     error(DiagnosticCode::kLiteralOutOfRange, span,
-          value_text(value) + " is too large for `" + report.type_text(target) + "`");
+          value_text(value) + " is too large for `" + sema_.report.type_text(target) + "`");
     return std::nullopt;
   }
   Wide integer = value.integer;
@@ -83,21 +86,22 @@ std::optional<uint64_t> Sema::fit(const Constant& value, ir::TypeId target, base
   if (integer >= limits.low && integer <= limits.high) return static_cast<uint64_t>(integer);
   if (auto bits = same_bits(value, integer, target, span)) return bits;
   error(DiagnosticCode::kLiteralOutOfRange, span,
-        wide_text(integer) + " does not fit into `" + report.type_text(target) + "`",
+        wide_text(integer) + " does not fit into `" + sema_.report.type_text(target) + "`",
         "it holds " + wide_text(limits.low) + ".." + wide_text(limits.high));
   return std::nullopt;
 }
 
-std::optional<uint64_t> Sema::same_bits(const Constant& value, Wide integer, ir::TypeId target,
-                                        base::SourceSpan span) {
-  Traits to = traits_of(program.types, target);
-  if (options.dialect == Dialect::kIec || value.form != Constant::Form::kInteger ||
-      program.types[target].kind == ir::Kind::kSubrange) {
+std::optional<uint64_t> Constants::same_bits(const Constant& value, Wide integer, ir::TypeId target,
+                                             base::SourceSpan span) {
+  Traits to = traits_of(sema_.program.types, target);
+  if (sema_.options.dialect == Dialect::kIec || value.form != Constant::Form::kInteger ||
+      sema_.program.types[target].kind == ir::Kind::kSubrange) {
     return std::nullopt;
   }
-  ir::Scalar scalar = program.types.scalar(target);
+  ir::Scalar scalar = sema_.program.types.scalar(target);
   Wide span_of_bits = static_cast<Wide>(1) << (ir::scalar_size(scalar) * 8);
-  bool pattern = value.pattern || (value.type.valid() && traits_of(program.types, value.type).bits);
+  bool pattern =
+      value.pattern || (value.type.valid() && traits_of(sema_.program.types, value.type).bits);
   bool into_signed =
       to.integer && ir::is_signed(scalar) && pattern && integer > 0 && integer < span_of_bits;
   bool into_bits = to.bits && integer < 0 && integer >= -span_of_bits / 2;
@@ -105,20 +109,20 @@ std::optional<uint64_t> Sema::same_bits(const Constant& value, Wide integer, ir:
   Wide wrapped = wrap_to(scalar, integer);
   warning(DiagnosticCode::kSignChanged, span,
           wide_text(integer) + " becomes " + wide_text(wrapped) + " in `" +
-              report.type_text(target) + "`",
+              sema_.report.type_text(target) + "`",
           into_bits ? "write the bits, for example with 16#" : "write the number");
   return static_cast<uint64_t>(wrapped);
 }
 
-std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId target,
-                                          base::SourceSpan span) {
-  const ir::Type& type = program.types[target];
+std::optional<std::string> Constants::fit_text(const Constant& value, ir::TypeId target,
+                                               base::SourceSpan span) {
+  const ir::Type& type = sema_.program.types[target];
   bool wide = type.kind == ir::Kind::kWstring;
   bool text = value.form == Constant::Form::kText &&
-              (program.types[value.type].kind == ir::Kind::kWstring) == wide;
+              (sema_.program.types[value.type].kind == ir::Kind::kWstring) == wide;
   if (!text) {
     error(DiagnosticCode::kTypeMismatch, span,
-          value_text(value) + " does not go with `" + report.type_text(target) + "`",
+          value_text(value) + " does not go with `" + sema_.report.type_text(target) + "`",
           wide ? "write WSTRING literals in double quotes"
                : "write STRING literals in single quotes");
     return std::nullopt;
@@ -127,32 +131,32 @@ std::optional<std::string> Sema::fit_text(const Constant& value, ir::TypeId targ
   if (value.text.size() <= room) return value.text;
   warning(DiagnosticCode::kStringTruncated, span,
           std::to_string(value.text.size() / (wide ? 2 : 1)) + " characters for `" +
-              report.type_text(target) + "`; the rest is cut off");
+              sema_.report.type_text(target) + "`; the rest is cut off");
   return value.text.substr(0, room);
 }
 
-std::optional<uint64_t> Sema::fold_bits(ExprId expr, ir::TypeId target, Known least) {
+std::optional<uint64_t> Constants::fold_bits(ExprId expr, ir::TypeId target, Known least) {
   auto value = fold(expr, target, least);
   if (!value) return std::nullopt;
-  if (const auto cut = cut_to(*this, *value, infer(expr), target)) return cut;
-  return fit(*value, target, tree[expr].span);
+  if (const auto cut = cut_to(sema_, *value, infer(expr), target)) return cut;
+  return fit(*value, target, sema_.tree[expr].span);
 }
 
-std::optional<int64_t> Sema::fold_integer(ExprId expr) {
+std::optional<int64_t> Constants::fold_integer(ExprId expr) {
   auto value = fold(expr, {});
   if (!value) return std::nullopt;
   bool integer = value->form == Constant::Form::kInteger;
   if (integer && value->type.valid()) {
-    Traits traits = traits_of(program.types, value->type);
+    Traits traits = traits_of(sema_.program.types, value->type);
     integer = traits.integer || traits.bits || traits.enumeration;
   }
   if (!integer) {
-    error(DiagnosticCode::kTypeMismatch, tree[expr].span, "an integer is needed here");
+    error(DiagnosticCode::kTypeMismatch, sema_.tree[expr].span, "an integer is needed here");
     return std::nullopt;
   }
   Limits limits = limits_of(ir::Scalar::kI64);
   if (value->integer > limits.high || value->integer < limits.low) {
-    error(DiagnosticCode::kLiteralOutOfRange, tree[expr].span,
+    error(DiagnosticCode::kLiteralOutOfRange, sema_.tree[expr].span,
           wide_text(value->integer) + " is too large here");
     return std::nullopt;
   }

@@ -2,7 +2,10 @@
 // gives them a type; typed ones wrap in their width as they would at run time.
 #include <cmath>
 
+#include "frontend/sema/calls.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/folder.h"
+#include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/width.h"
 
@@ -49,7 +52,7 @@ std::optional<Constant> Folder::member(ExprId id, const Expr& expr) {
 
 // A variable or part of one, with its initial value.
 std::optional<Constant> Folder::part(ExprId id) {
-  auto part = sema_.initial_part(id);
+  auto part = sema_.ask<Constants>().initial_part(id);
   if (!part) return std::nullopt;
   const ir::TypeTable& types = sema_.program.types;
   ir::ConstId init = part->init;
@@ -90,9 +93,9 @@ std::optional<Constant> Folder::bits_of(ExprId id, const Expr& expr) {
 std::optional<Constant> Folder::call(ExprId id) {
   const Expr& expr = sema_.tree[id];
   if (expr.kind == ExprKind::kCall) {
-    Callee callee = sema_.callee(expr);
+    Callee callee = sema_.ask<Calls>().callee(expr);
     if (callee.kind == Callee::Kind::kBound) {
-      auto bound = sema_.bound_of(expr, callee.upper);
+      auto bound = sema_.ask<Calls>().bound_of(expr, callee.upper);
       if (!bound) return std::nullopt;
       Constant value;
       value.type = sema_.infer(id).type;
@@ -149,7 +152,7 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
     if (value.integer < span)
       value.integer = wrap_to(sema_.program.types.scalar(type), value.integer);
   }
-  auto bits = sema_.fit(value, type, expr.span);
+  auto bits = sema_.ask<Constants>().fit(value, type, expr.span);
   if (!bits) return std::nullopt;
   return of_bits(type, *bits);
 }
@@ -232,7 +235,9 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   const Note note = sema_.infer(id);
   ir::TypeId saved = context_;
   if (operator_class(expr.binary) == OperatorClass::kComparison) {
-    context_ = sema_.unify(sema_.infer(expr.operand), sema_.infer(expr.right), expr.span).type;
+    context_ = sema_.ask<OperatorTypes>()
+                   .unify(sema_.infer(expr.operand), sema_.infer(expr.right), expr.span)
+                   .type;
   } else if (note.flex == Flex::kNone) {
     context_ = computed_type(sema_, note);
   }
@@ -262,9 +267,9 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   return out;
 }
 
-std::optional<Constant> Sema::fold(ExprId expr, ir::TypeId context, Known least) {
+std::optional<Constant> Constants::fold(ExprId expr, ir::TypeId context, Known least) {
   if (!infer(expr).type.valid()) return std::nullopt;
-  return Folder(*this, context, least).fold(expr);
+  return Folder(sema_, context, least).fold(expr);
 }
 
 }  // namespace frontend

@@ -1,6 +1,9 @@
 // The type of every expression from the inside out, before its context has spoken.
 // Each expression is visited once; the note stays.
+#include "frontend/sema/calls.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/width.h"
@@ -84,9 +87,9 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
     case ExprKind::kUnary:
       return infer_unary(expr);
     case ExprKind::kBinary:
-      return infer_binary(expr);
+      return ask<OperatorTypes>().infer_binary(expr);
     case ExprKind::kCall:
-      return infer_call(expr);
+      return ask<Calls>().infer_call(expr);
     case ExprKind::kAssign:
       return infer_assign(expr);
     case ExprKind::kResult:

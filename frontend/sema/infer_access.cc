@@ -1,6 +1,7 @@
 // Members and elements.
 #include <algorithm>
 
+#include "frontend/sema/constants.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
@@ -164,7 +165,7 @@ void Sema::check_index_list(const Expr& expr, const ir::Type& array) {
       continue;
     }
     if (!note.constant) continue;
-    auto value = fold_integer(index);
+    auto value = ask<Constants>().fold_integer(index);
     if (!value || (*value >= dims[i].low && *value <= dims[i].high)) continue;
     error(DiagnosticCode::kIndexOutOfBounds, tree[index].span,
           "index " + std::to_string(*value) + " is outside " + std::to_string(dims[i].low) + ".." +

@@ -1,9 +1,14 @@
 // Calls: what is called, and what it gives back.
 #include <algorithm>
 
+#include "frontend/sema/calls.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/open_functions.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/standard_calls.h"
 
 namespace frontend {
 namespace {
@@ -16,39 +21,41 @@ std::string_view last_name(const Name& path) {
 
 }  // namespace
 
-Callee Sema::callee(const Expr& call) {
-  const Expr& head = tree[call.operand];
+Callee Calls::callee(const Expr& call) {
+  const Expr& head = sema_.tree[call.operand];
   if (head.kind == ExprKind::kName) {
-    VarId id = find_variable(head);
+    VarId id = sema_.find_variable(head);
     if (!id.valid() && !head.global) {
-      if (auto method = objects.method_of(declared.block_of(scope_), head.name)) return *method;
+      if (auto method = sema_.objects.method_of(sema_.declared.block_of(scope_), head.name))
+        return *method;
     }
-    if (!id.valid()) id = program_variable(head.name.text, true);
+    if (!id.valid()) id = sema_.program_variable(head.name.text, true);
     if (!id.valid()) {
       return named_callee(call, head);
     }
     // The function's own name is its result inside; calling it is recursion.
-    if (scope_.pou != nullptr && id == scope_.pou->result) return objects.itself(head);
+    if (scope_.pou != nullptr && id == scope_.pou->result) return sema_.objects.itself(head);
     // A variable may have a function's name; calls then still mean the function.
-    bool instance = declared.pou_of(resolve(id).type) != nullptr;
-    if (!instance && library.functions.contains(head.name.text)) return named_callee(call, head);
+    bool instance = sema_.declared.pou_of(resolve(id).type) != nullptr;
+    if (!instance && sema_.library.functions.contains(head.name.text))
+      return named_callee(call, head);
   }
-  if (namespaces.declares(head)) return named_callee(call, head);
-  if (objects.is_super(head)) return objects.base_body(head);
-  if (head.kind == ExprKind::kMember && !namespaces.is_scope(tree[head.operand])) {
-    const uint32_t owner = objects.receiver(head.operand);
-    if (auto method = objects.method_of(owner, head.name)) return *method;
+  if (sema_.namespaces.declares(head)) return named_callee(call, head);
+  if (sema_.objects.is_super(head)) return sema_.objects.base_body(head);
+  if (head.kind == ExprKind::kMember && !sema_.namespaces.is_scope(sema_.tree[head.operand])) {
+    const uint32_t owner = sema_.objects.receiver(head.operand);
+    if (auto method = sema_.objects.method_of(owner, head.name)) return *method;
   }
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};
-  const PouInfo* block = declared.pou_of(note.type);
+  const PouInfo* block = sema_.declared.pou_of(note.type);
   if (block == nullptr) {
     const VarDecl* decl =
-        note.variable.valid() ? declared.variables[note.variable.index].decl : nullptr;
+        note.variable.valid() ? sema_.declared.variables[note.variable.index].decl : nullptr;
     bool chart = decl != nullptr && decl->implied;
     error(DiagnosticCode::kNotCallable, head.span,
           chart ? quoted(head.name) + " belongs to the chart, whose steps alone run its actions"
-                : "`" + report.type_text(note.type) + "` cannot be called",
+                : "`" + sema_.report.type_text(note.type) + "` cannot be called",
           chart              ? "put what several places call into a function or function block"
           : call.instruction ? "write LD in front of it to load it"
                              : "");
@@ -59,38 +66,39 @@ Callee Sema::callee(const Expr& call) {
           quoted(block->decl->name) + " is a class and has no body", "call a method of it");
     return {};
   }
-  const Name box = tree.name(call.number);
+  const Name box = sema_.tree.name(call.number);
   if (std::string_view type = last_name(box); !type.empty() &&
                                               !ir::same_name(type, block->decl->name.text) &&
-                                              !declared.types.contains(type)) {
+                                              !sema_.declared.types.contains(type)) {
     error(DiagnosticCode::kOtherBoxType, box.span,
           "the instance is a " + quoted(block->decl->name) + ", its box says " + quoted(box),
           "write " + quoted(block->decl->name) + ", or declare the instance as " + quoted(box));
   }
   Callee callee;
   callee.kind = Callee::Kind::kInstance;
-  callee.pou = static_cast<uint32_t>(declared.pou_by_type.find(note.type)->second);
+  callee.pou = static_cast<uint32_t>(sema_.declared.pou_by_type.find(note.type)->second);
   return callee;
 }
 
 // f or A.f
-Callee Sema::named_callee(const Expr& call, const Expr& head) {
+Callee Calls::named_callee(const Expr& call, const Expr& head) {
   Callee callee;
-  const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
-  bool known = declared.pou_names.contains(name);
-  if (!known && !library.functions.contains(name)) known = ask<Collection>().use_library(name);
+  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, head);
+  bool known = sema_.declared.pou_names.contains(name);
+  if (!known && !sema_.library.functions.contains(name))
+    known = ask<Collection>().use_library(name);
   if (known) {
-    uint32_t number = declared.pou_names.find(name)->second;
-    if (declared.pous[number].decl->kind == PouKind::kFunction) {
-      return select_function(call, number);
+    uint32_t number = sema_.declared.pou_names.find(name)->second;
+    if (sema_.declared.pous[number].decl->kind == PouKind::kFunction) {
+      return ask<OpenFunctions>().select_function(call, number);
     }
-    bool block = declared.pous[number].decl->kind == PouKind::kFunctionBlock;
+    bool block = sema_.declared.pous[number].decl->kind == PouKind::kFunctionBlock;
     error(block ? DiagnosticCode::kNeedsInstance : DiagnosticCode::kNotCallable, head.span,
           quoted(head.name) + (block ? " is a function block" : " is a program"),
           block ? "declare an instance of it and call that" : "let a task run it");
     return callee;
   }
-  if (auto found = library.functions.find(name); found != library.functions.end()) {
+  if (auto found = sema_.library.functions.find(name); found != sema_.library.functions.end()) {
     callee.kind = Callee::Kind::kStandard;
     callee.row = found->second;
     return callee;
@@ -106,7 +114,7 @@ Callee Sema::named_callee(const Expr& call, const Expr& head) {
     callee.conversion = *conversion;
     return callee;
   }
-  if (auto conversion = conversion_to_enumeration(name)) {
+  if (auto conversion = ask<StandardCalls>().conversion_to_enumeration(name)) {
     callee.kind = Callee::Kind::kConversion;
     callee.conversion = *conversion;
     return callee;
@@ -118,7 +126,7 @@ Callee Sema::named_callee(const Expr& call, const Expr& head) {
     return callee;
   }
   if (const TestCallRow* test = find_test_call(name)) {
-    if (for_tests() || test->call == TestCall::kAssert) {
+    if (sema_.for_tests() || test->call == TestCall::kAssert) {
       callee.kind = Callee::Kind::kTest;
       callee.test = test;
     } else {
@@ -128,20 +136,20 @@ Callee Sema::named_callee(const Expr& call, const Expr& head) {
     return callee;
   }
   error(DiagnosticCode::kUnknownName, head.span, "`" + std::string(name) + "` is not declared",
-        name_suggestion(name, true, head.instruction));
+        sema_.name_suggestion(name, true, head.instruction));
   return callee;
 }
 
-Note Sema::infer_call(const Expr& expr) {
+Note Calls::infer_call(const Expr& expr) {
   Callee target = callee(expr);
   Note note;
   switch (target.kind) {
     case Callee::Kind::kError:
       return {};
     case Callee::Kind::kStandard:
-      return infer_standard(expr, target);
+      return ask<StandardCalls>().infer_standard(expr, target);
     case Callee::Kind::kConversion:
-      return infer_conversion(expr, target.conversion);
+      return ask<StandardCalls>().infer_conversion(expr, target.conversion);
     case Callee::Kind::kBound:
       return infer_bound(expr, target.upper);
     case Callee::Kind::kReference:
@@ -159,7 +167,7 @@ Note Sema::infer_call(const Expr& expr) {
     case Callee::Kind::kMethod:
       break;
   }
-  const PouInfo& function = declared.pous[target.pou];
+  const PouInfo& function = sema_.declared.pous[target.pou];
   note.calls = true;
   if (!function.result.valid()) {
     error(DiagnosticCode::kNoResult, expr.span, quoted(function.decl->name) + " has no result",
@@ -170,10 +178,10 @@ Note Sema::infer_call(const Expr& expr) {
   return note;
 }
 
-Note Sema::unify_arguments(const std::vector<ExprId>& args, uint32_t first) {
+Note OperatorTypes::unify_arguments(const std::vector<ExprId>& args, uint32_t first) {
   Note note = infer(args[first]);
   for (uint32_t i = first + 1; i < args.size(); ++i) {
-    note = unify(note, infer(args[i]), tree[args[i]].span);
+    note = unify(note, infer(args[i]), sema_.tree[args[i]].span);
     if (!note.type.valid()) return {};
   }
   note.variable = {};

@@ -1,7 +1,9 @@
 // Explicit conversions: what may be converted into what.
 #include <algorithm>
 
+#include "frontend/sema/calls.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/standard_calls.h"
 
 namespace frontend {
 namespace {
@@ -16,7 +18,7 @@ std::string kind_text(ir::Kind kind) {
 }  // namespace
 
 // TO_Mode, INT_TO_Mode: the literal of that number, as an implicit conversion takes it (W0001).
-std::optional<Conversion> Sema::conversion_to_enumeration(std::string_view name) {
+std::optional<Conversion> StandardCalls::conversion_to_enumeration(std::string_view name) {
   constexpr std::string_view kTo = "TO_";
   for (size_t at = 0; at + kTo.size() < name.size(); ++at) {
     if (!ir::same_name(name.substr(at, kTo.size()), kTo)) continue;
@@ -27,17 +29,17 @@ std::optional<Conversion> Sema::conversion_to_enumeration(std::string_view name)
       if (!source) continue;
       out.from = *source;
     }
-    const auto found = find_type(name.substr(at + kTo.size()));
-    if (!found || !is_enum(program.types, found->type)) continue;
+    const auto found = sema_.find_type(name.substr(at + kTo.size()));
+    if (!found || !is_enum(sema_.program.types, found->type)) continue;
     out.enumeration = found->type;
-    out.to = program.types.root_kind(found->type);
+    out.to = sema_.program.types.root_kind(found->type);
     return out;
   }
   return std::nullopt;
 }
 
-Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
-  ExprId argument = conversion_argument(expr);
+Note StandardCalls::infer_conversion(const Expr& expr, const Conversion& conversion) {
+  ExprId argument = ask<Calls>().conversion_argument(expr);
   if (!argument.valid()) {
     error(DiagnosticCode::kWrongArgumentCount, expr.span, "a conversion takes one argument");
     return {};
@@ -47,52 +49,54 @@ Note Sema::infer_conversion(const Expr& expr, const Conversion& conversion) {
   }
   Note note = infer(argument);
   if (!note.type.valid()) return {};
-  bool text = is_string(program.types, note.type);
-  if (!program.types.is_scalar(note.type) && !text) {
+  bool text = is_string(sema_.program.types, note.type);
+  if (!sema_.program.types.is_scalar(note.type) && !text) {
     error(DiagnosticCode::kWrongArgument, expr.span,
-          "`" + report.type_text(note.type) + "` cannot be converted");
+          "`" + sema_.report.type_text(note.type) + "` cannot be converted");
     return {};
   }
-  ir::Kind from = text ? program.types[note.type].kind : program.types.root_kind(note.type);
+  ir::Kind from =
+      text ? sema_.program.types[note.type].kind : sema_.program.types.root_kind(note.type);
   if (!check_conversion(expr, conversion, from, note)) return {};
-  uint32_t capacity = text ? program.types[note.type].capacity : kDefaultStringCapacity;
-  Traits source = traits_of(program.types, note.type);
+  uint32_t capacity = text ? sema_.program.types[note.type].capacity : kDefaultStringCapacity;
+  Traits source = traits_of(sema_.program.types, note.type);
   note.variable = {};
   note.constant = false;
   note.bit_size = 0;
   note.known = std::min(note.known, Known::kByCall);
-  mark_enabled(expr, note);
+  ask<Calls>().mark_enabled(expr, note);
   note.flex = Flex::kNone;
   note.width = Width::kOwn;
-  note.type = conversion.to == ir::Kind::kString    ? program.types.string(capacity)
-              : conversion.to == ir::Kind::kWstring ? program.types.wstring(capacity)
-                                                    : program.types.elementary(conversion.to);
+  note.type = conversion.to == ir::Kind::kString    ? sema_.program.types.string(capacity)
+              : conversion.to == ir::Kind::kWstring ? sema_.program.types.wstring(capacity)
+                                                    : sema_.program.types.elementary(conversion.to);
   if (conversion.enumeration.valid()) note.type = conversion.enumeration;
-  bool rounds = source.real && !traits_of(program.types, note.type).real;
+  bool rounds = source.real && !traits_of(sema_.program.types, note.type).real;
   note.can_trap = note.can_trap || rounds || conversion.bcd != Conversion::Bcd::kNone;
   return note;
 }
 
 // As CODESYS has it: the number, unless the type says {attribute 'to_string'}.
-bool Sema::prints_names(ir::TypeId enumeration) const {
-  const std::string& name = program.types[without_range(program.types, enumeration)].name;
-  for (const TypeDecl& decl : tree.types) {
-    if (!decl.spec.valid() || !ir::same_name(facts.specs[decl.spec.index].name.text, name))
+bool StandardCalls::prints_names(ir::TypeId enumeration) const {
+  const std::string& name =
+      sema_.program.types[without_range(sema_.program.types, enumeration)].name;
+  for (const TypeDecl& decl : sema_.tree.types) {
+    if (!decl.spec.valid() || !ir::same_name(sema_.facts.specs[decl.spec.index].name.text, name))
       continue;
-    return tree.find_attribute(decl.attributes, "to_string") != nullptr;
+    return sema_.tree.find_attribute(decl.attributes, "to_string") != nullptr;
   }
   return false;
 }
 
-bool Sema::check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
-                            const Note& argument) {
+bool StandardCalls::check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
+                                     const Note& argument) {
   bool named = !conversion.any_source;
-  std::string name(tree[expr.operand].name.text);
+  std::string name(sema_.tree[expr.operand].name.text);
   if (named && !is_convertible(conversion.from, conversion.to)) {
     error(DiagnosticCode::kNoConversion, expr.span, "there is no conversion " + name);
     return false;
   }
-  Traits traits = traits_of(program.types, argument.type);
+  Traits traits = traits_of(sema_.program.types, argument.type);
   bool literal = argument.flex == Flex::kInteger;
   const char* wanted = nullptr;
   if (conversion.truncate && !traits.real) wanted = "REAL or LREAL";
@@ -110,12 +114,12 @@ bool Sema::check_conversion(const Expr& expr, const Conversion& conversion, ir::
   if (wanted != nullptr || mismatch) {
     error(DiagnosticCode::kWrongArgument, expr.span,
           name + " takes " + (wanted != nullptr ? wanted : kind_text(conversion.from)) +
-              ", the argument is `" + report.type_text(argument.type) + "`");
+              ", the argument is `" + sema_.report.type_text(argument.type) + "`");
     return false;
   }
   if (character || literal || is_convertible(from, conversion.to)) return true;
   error(DiagnosticCode::kNoConversion, expr.span,
-        "there is no conversion of `" + report.type_text(argument.type) + "` to `" +
+        "there is no conversion of `" + sema_.report.type_text(argument.type) + "` to `" +
             kind_text(conversion.to) + "`");
   return false;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "frontend/sema/operand_warnings.h"
+#include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/width.h"
 
@@ -65,23 +66,24 @@ std::string_view operator_text(BinaryOp op) {
 
 // Literals take the other operand's type and never widen it; a real literal beside
 // an integer leaves the choice of the real type to the context.
-Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
+Note OperatorTypes::unify(const Note& a, const Note& b, base::SourceSpan span) {
   Note note = merged(a, b);
   if (!a.type.valid() || !b.type.valid()) return {};
-  const ir::TypeTable& types = program.types;
+  const ir::TypeTable& types = sema_.program.types;
   if (types.is_reference(a.type) || types.is_reference(b.type)) {
     note.type = common_reference(a, b);
     note.flex = a.flex == Flex::kNull && b.flex == Flex::kNull ? Flex::kNull : Flex::kNone;
     if (note.type.valid()) return note;
     error(DiagnosticCode::kOperandsDiffer, span,
-          "`" + report.type_text(a.type) + "` and `" + report.type_text(b.type) +
+          "`" + sema_.report.type_text(a.type) + "` and `" + sema_.report.type_text(b.type) +
               "` have no common type");
     return {};
   }
   if (is_flexible_number(a) && is_flexible_number(b)) {
     note.flex = a.flex == Flex::kReal || b.flex == Flex::kReal ? Flex::kReal : Flex::kInteger;
-    note.type = note.flex == Flex::kReal ? types.elementary(ir::Kind::kLreal)
-                                         : common_type(types, a.type, b.type, options.dialect);
+    note.type = note.flex == Flex::kReal
+                    ? types.elementary(ir::Kind::kLreal)
+                    : common_type(types, a.type, b.type, sema_.options.dialect);
     return note;
   }
   if (is_flexible_number(b)) {
@@ -94,7 +96,7 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
       note.type = without_range(types, b.type);
       return note;
     }
-    if (a.flex == Flex::kInteger && other.boolean && options.dialect != Dialect::kIec) {
+    if (a.flex == Flex::kInteger && other.boolean && sema_.options.dialect != Dialect::kIec) {
       note.type = b.type;
       return note;
     }
@@ -104,7 +106,7 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
       note.type = types.elementary(small ? ir::Kind::kReal : ir::Kind::kLreal);
       return note;
     }
-    if (a.flex == Flex::kInteger && other.enumeration && options.dialect != Dialect::kIec) {
+    if (a.flex == Flex::kInteger && other.enumeration && sema_.options.dialect != Dialect::kIec) {
       note.type = types[without_range(types, b.type)].base;
       return note;
     }
@@ -122,17 +124,17 @@ Note Sema::unify(const Note& a, const Note& b, base::SourceSpan span) {
     note.type = a.type;
     return note;
   } else {
-    note.type = common_type(types, a.type, b.type, options.dialect);
+    note.type = common_type(types, a.type, b.type, sema_.options.dialect);
     if (note.type.valid()) return note;
   }
   error(DiagnosticCode::kOperandsDiffer, span,
-        "`" + report.type_text(a.type) + "` and `" + report.type_text(b.type) +
+        "`" + sema_.report.type_text(a.type) + "` and `" + sema_.report.type_text(b.type) +
             "` have no common type",
         "convert one of them explicitly");
   return {};
 }
 
-Note Sema::infer_binary(const Expr& expr) {
+Note OperatorTypes::infer_binary(const Expr& expr) {
   const Note left = infer(expr.operand);
   const Note right = infer(expr.right);
   if (!left.type.valid() || !right.type.valid()) return {};
@@ -142,26 +144,26 @@ Note Sema::infer_binary(const Expr& expr) {
         allow_extension(operator_text(expr.binary), expr.span, "nest IF statements");
       }
       bool eager = expr.binary == BinaryOp::kAnd || expr.binary == BinaryOp::kOr;
-      bool boolean = traits_of(program.types, right.type).boolean;
-      if (eager && boolean && right.can_trap) check_right_operand(*this, expr);
+      bool boolean = traits_of(sema_.program.types, right.type).boolean;
+      if (eager && boolean && right.can_trap) check_right_operand(sema_, expr);
       return infer_bitwise(expr.binary, left, right, expr.span);
     }
     case OperatorClass::kComparison:
-      check_real_equality(*this, expr);
-      check_wrapped(*this, expr.operand, "compared");
-      check_wrapped(*this, expr.right, "compared");
+      check_real_equality(sema_, expr);
+      check_wrapped(sema_, expr.operand, "compared");
+      check_wrapped(sema_, expr.right, "compared");
       return infer_comparison(expr.binary, left, right, expr.span);
     case OperatorClass::kArithmetic: {
       Note note = infer_arithmetic(expr.binary, left, right, expr.span);
-      note = widened_by(*this, widened_by(*this, note, expr.operand), expr.right);
+      note = widened_by(sema_, widened_by(sema_, note, expr.operand), expr.right);
       bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
       if (divides && note.type.valid() && right.constant && !left.constant) {
-        check_divisor(*this, expr.right, !traits_of(program.types, note.type).real);
+        check_divisor(sema_, expr.right, !traits_of(sema_.program.types, note.type).real);
       }
-      if (divides) note = quotient_width(*this, note, expr, left, right);
-      if (divides) check_wrapped(*this, expr.operand, "divided");
+      if (divides) note = quotient_width(sema_, note, expr, left, right);
+      if (divides) check_wrapped(sema_, expr.operand, "divided");
       if (divides && !right.constant && note.type.valid() &&
-          !traits_of(program.types, note.type).real) {
+          !traits_of(sema_.program.types, note.type).real) {
         note.can_trap = true;
       }
       return note;
@@ -170,53 +172,56 @@ Note Sema::infer_binary(const Expr& expr) {
   return {};
 }
 
-Note Sema::infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span) {
+Note OperatorTypes::infer_bitwise(BinaryOp op, const Note& left, const Note& right,
+                                  base::SourceSpan span) {
   bool lazy = op == BinaryOp::kAndThen || op == BinaryOp::kOrElse;
-  bool address = program.types.is_reference(left.type) || program.types.is_reference(right.type);
+  bool address =
+      sema_.program.types.is_reference(left.type) || sema_.program.types.is_reference(right.type);
   // Whether a pointer is aligned: the bits of the number that its address is.
-  if (address && !lazy && options.dialect != Dialect::kIec) {
+  if (address && !lazy && sema_.options.dialect != Dialect::kIec) {
     return infer_pointer_arithmetic(op, left, right, span);
   }
   Note note = unify(left, right, span);
   if (!note.type.valid()) return {};
-  Traits traits = traits_of(program.types, note.type);
-  bool integers = traits.integer && (options.dialect != Dialect::kIec || note.flex != Flex::kNone);
+  Traits traits = traits_of(sema_.program.types, note.type);
+  bool integers =
+      traits.integer && (sema_.options.dialect != Dialect::kIec || note.flex != Flex::kNone);
   if (traits.boolean || (!lazy && (traits.bits || integers))) {
     const bool wide = left.width == Width::kWide || right.width == Width::kWide;
-    if (wide && is_small(*this, note)) note.width = Width::kWide;
+    if (wide && is_small(sema_, note)) note.width = Width::kWide;
     return note;
   }
-  error(
-      DiagnosticCode::kBadOperand, span,
-      std::string(operator_text(op)) + " is not defined for `" + report.type_text(note.type) + "`",
-      lazy ? "both operands have to be BOOL" : "use BOOL or bit strings");
+  error(DiagnosticCode::kBadOperand, span,
+        std::string(operator_text(op)) + " is not defined for `" +
+            sema_.report.type_text(note.type) + "`",
+        lazy ? "both operands have to be BOOL" : "use BOOL or bit strings");
   return {};
 }
 
-Note Sema::infer_comparison(BinaryOp op, const Note& left, const Note& right,
-                            base::SourceSpan span) {
+Note OperatorTypes::infer_comparison(BinaryOp op, const Note& left, const Note& right,
+                                     base::SourceSpan span) {
   Note note = unify(left, right, span);
   if (!note.type.valid()) return {};
-  bool scalar = program.types.is_scalar(note.type);
-  if (!scalar && !is_string(program.types, note.type)) {
+  bool scalar = sema_.program.types.is_scalar(note.type);
+  if (!scalar && !is_string(sema_.program.types, note.type)) {
     error(DiagnosticCode::kBadOperand, span,
-          std::string(operator_text(op)) + " is not defined for `" + report.type_text(note.type) +
-              "`",
+          std::string(operator_text(op)) + " is not defined for `" +
+              sema_.report.type_text(note.type) + "`",
           "compare the elements one by one");
     return {};
   }
   note.flex = Flex::kNone;
-  note.type = program.types.elementary(ir::Kind::kBool);
+  note.type = sema_.program.types.elementary(ir::Kind::kBool);
   return note;
 }
 
-Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
-                            base::SourceSpan span) {
-  if (program.types.is_reference(left.type) || program.types.is_reference(right.type)) {
+Note OperatorTypes::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                                     base::SourceSpan span) {
+  if (sema_.program.types.is_reference(left.type) || sema_.program.types.is_reference(right.type)) {
     return infer_pointer_arithmetic(op, left, right, span);
   }
-  Traits a = traits_of(program.types, left.type);
-  Traits b = traits_of(program.types, right.type);
+  Traits a = traits_of(sema_.program.types, left.type);
+  Traits b = traits_of(sema_.program.types, right.type);
   if (a.duration || a.date || b.duration || b.date) {
     return infer_time_arithmetic(op, left, right, span);
   }
@@ -227,40 +232,42 @@ Note Sema::infer_arithmetic(BinaryOp op, const Note& left, const Note& right,
     note.known = std::min(note.known, Known::kByCall);
     bool real_base = a.real;
     if ((a.number() || a.bits) && (b.number() || b.bits)) {
-      note.type = real_base ? without_range(program.types, left.type)
-                            : program.types.elementary(ir::Kind::kLreal);
+      note.type = real_base ? without_range(sema_.program.types, left.type)
+                            : sema_.program.types.elementary(ir::Kind::kLreal);
       note.flex = real_base ? left.flex : Flex::kReal;
       return note;
     }
   } else {
     Note note = unify(left, right, span);
     if (!note.type.valid()) return {};
-    Traits traits = traits_of(program.types, note.type);
-    bool number = traits.number() || (traits.bits && options.dialect != Dialect::kIec);
-    const bool of_enumeration = traits.enumeration && options.dialect != Dialect::kIec;
-    if (of_enumeration) note.type = program.types[without_range(program.types, note.type)].base;
+    Traits traits = traits_of(sema_.program.types, note.type);
+    bool number = traits.number() || (traits.bits && sema_.options.dialect != Dialect::kIec);
+    const bool of_enumeration = traits.enumeration && sema_.options.dialect != Dialect::kIec;
+    if (of_enumeration)
+      note.type = sema_.program.types[without_range(sema_.program.types, note.type)].base;
     if (of_enumeration || (number && !(op == BinaryOp::kMod && traits.real))) {
-      note.width = width_of(*this, note, op != BinaryOp::kDiv && op != BinaryOp::kMod);
+      note.width = width_of(sema_, note, op != BinaryOp::kDiv && op != BinaryOp::kMod);
       return note;
     }
   }
   error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + report.type_text(left.type) +
-            "` and `" + report.type_text(right.type) + "`");
+        std::string(operator_text(op)) + " is not defined for `" +
+            sema_.report.type_text(left.type) + "` and `" + sema_.report.type_text(right.type) +
+            "`");
   return {};
 }
 
 // IEC table 30: durations with durations and numbers, points in time with durations,
 // and the distance of two points of one kind.
-Note Sema::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
-                                 base::SourceSpan span) {
+Note OperatorTypes::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                                          base::SourceSpan span) {
   Note note = merged(left, right);
-  const ir::TypeTable& types = program.types;
+  const ir::TypeTable& types = sema_.program.types;
   Traits a = traits_of(types, left.type);
   Traits b = traits_of(types, right.type);
   bool sum = op == BinaryOp::kAdd || op == BinaryOp::kSub;
   if (a.duration && b.duration && sum) {
-    note.type = common_type(types, left.type, right.type, options.dialect);
+    note.type = common_type(types, left.type, right.type, sema_.options.dialect);
     return note;
   }
   if (a.date && b.duration && sum && types.root_kind(left.type) != ir::Kind::kDate &&
@@ -269,7 +276,7 @@ Note Sema::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& righ
     return note;
   }
   if (a.date && b.date && op == BinaryOp::kSub) {
-    ir::TypeId common = common_type(types, left.type, right.type, options.dialect);
+    ir::TypeId common = common_type(types, left.type, right.type, sema_.options.dialect);
     if (common.valid()) {
       note.type = types.elementary(is_long_time(types.root_kind(common)) ? ir::Kind::kLtime
                                                                          : ir::Kind::kTime);
@@ -285,8 +292,9 @@ Note Sema::infer_time_arithmetic(BinaryOp op, const Note& left, const Note& righ
     return note;
   }
   error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + report.type_text(left.type) +
-            "` and `" + report.type_text(right.type) + "`");
+        std::string(operator_text(op)) + " is not defined for `" +
+            sema_.report.type_text(left.type) + "` and `" + sema_.report.type_text(right.type) +
+            "`");
   return {};
 }
 

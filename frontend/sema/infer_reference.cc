@@ -1,4 +1,6 @@
 // Pointers and references (docs/adr/0005): their types, what they lead to, their arithmetic.
+#include "frontend/sema/calls.h"
+#include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 
@@ -99,7 +101,7 @@ Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
   return note;
 }
 
-Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
+Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   const uint32_t wanted = call == ReferenceCall::kQuery ? 2 : 1;
   if (call == ReferenceCall::kNew && expr.list.count == 2) {
     error(DiagnosticCode::kBadPool, expr.span, "a pool gives one element at a time",
@@ -109,69 +111,70 @@ Note Sema::infer_reference_call(const Expr& expr, ReferenceCall call) {
   }
   bool given = expr.list.count == wanted;
   for (uint32_t i = 0; i < wanted && given; ++i) {
-    const Arg& arg = tree.args[expr.list.first + i];
+    const Arg& arg = sema_.tree.args[expr.list.first + i];
     given = arg.value.valid() && !arg.output;
   }
   if (!given) {
     error(DiagnosticCode::kWrongArgumentCount, expr.span,
-          "`" + std::string(tree[expr.operand].name.text) + "` takes " +
+          "`" + std::string(sema_.tree[expr.operand].name.text) + "` takes " +
               (wanted == 1 ? "one argument" : "two arguments"));
     return {};
   }
-  const ExprId argument = tree.args[expr.list.first].value;
+  const ExprId argument = sema_.tree.args[expr.list.first].value;
   Note note;
-  if (call == ReferenceCall::kNew) return pools.infer_new(argument);
+  if (call == ReferenceCall::kNew) return sema_.pools.infer_new(argument);
   if (call == ReferenceCall::kSizeof) {
     if (!type_of_argument(argument).valid()) return {};
-    note.type = program.types.elementary(ir::Kind::kUdint);
+    note.type = sema_.program.types.elementary(ir::Kind::kUdint);
     note.flex = Flex::kInteger;
     return note;
   }
   const Note& operand = infer(argument);
   if (!operand.type.valid()) return {};
-  if (call == ReferenceCall::kDelete) return pools.infer_delete(argument);
+  if (call == ReferenceCall::kDelete) return sema_.pools.infer_delete(argument);
   note.calls = operand.calls;
   note.can_trap = operand.can_trap;
   switch (call) {
     case ReferenceCall::kQuery:
-      infer(tree.args[expr.list.first + 1].value);
+      infer(sema_.tree.args[expr.list.first + 1].value);
       note.calls = true;
-      note.type = program.types.elementary(ir::Kind::kBool);
+      note.type = sema_.program.types.elementary(ir::Kind::kBool);
       return note;
     case ReferenceCall::kAdr:
-      note.type = program.types.pointer(operand.type);
+      note.type = sema_.program.types.pointer(operand.type);
       note.flex = Flex::kNull;
       return note;
     case ReferenceCall::kRef:
-      note.type = program.types.ref_to(operand.type);
+      note.type = sema_.program.types.ref_to(operand.type);
       return note;
     default:
-      if (!operand.reference.valid() && !program.types.is_reference(operand.type)) {
+      if (!operand.reference.valid() && !sema_.program.types.is_reference(operand.type)) {
         error(DiagnosticCode::kBadReference, expr.span,
-              "`" + report.type_text(operand.type) + "` is not a reference");
+              "`" + sema_.report.type_text(operand.type) + "` is not a reference");
         return {};
       }
-      note.type = program.types.elementary(ir::Kind::kBool);
+      note.type = sema_.program.types.elementary(ir::Kind::kBool);
       return note;
   }
 }
 
 // SIZEOF takes a variable or a type.
-ir::TypeId Sema::type_of_argument(ExprId argument) {
-  const Expr& expr = tree[argument];
-  if (expr.kind == ExprKind::kType) return resolve_type(expr.spec()).type;
-  if (expr.kind == ExprKind::kName ? !find_variable(expr.name).valid()
-                                   : namespaces.declares(expr)) {
-    if (auto use = find_type(namespaces.find(NameSort::kDeclaration, expr))) return use->type;
+ir::TypeId Calls::type_of_argument(ExprId argument) {
+  const Expr& expr = sema_.tree[argument];
+  if (expr.kind == ExprKind::kType) return sema_.resolve_type(expr.spec()).type;
+  if (expr.kind == ExprKind::kName ? !sema_.find_variable(expr.name).valid()
+                                   : sema_.namespaces.declares(expr)) {
+    if (auto use = sema_.find_type(sema_.namespaces.find(NameSort::kDeclaration, expr)))
+      return use->type;
   }
   return infer(argument).type;
 }
 
 // Sums move a pointer by bytes; the distance of two pointers is a number; every other
 // operation takes the pointer as the number that its address is.
-Note Sema::infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& right,
-                                    base::SourceSpan span) {
-  const ir::TypeTable& types = program.types;
+Note OperatorTypes::infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& right,
+                                             base::SourceSpan span) {
+  const ir::TypeTable& types = sema_.program.types;
   Note note;
   note.calls = left.calls || right.calls;
   note.can_trap = left.can_trap || right.can_trap;
@@ -198,14 +201,15 @@ Note Sema::infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& r
     return note;
   }
   error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" + report.type_text(left.type) +
-            "` and `" + report.type_text(right.type) + "`");
+        std::string(operator_text(op)) + " is not defined for `" +
+            sema_.report.type_text(left.type) + "` and `" + sema_.report.type_text(right.type) +
+            "`");
   return {};
 }
 
 // What a reference is compared with: another one, NULL, or an integer that holds an address.
-ir::TypeId Sema::common_reference(const Note& a, const Note& b) {
-  const ir::TypeTable& types = program.types;
+ir::TypeId OperatorTypes::common_reference(const Note& a, const Note& b) {
+  const ir::TypeTable& types = sema_.program.types;
   if (types.is_reference(a.type) && types.is_reference(b.type)) {
     return a.flex == Flex::kNull ? b.type : a.type;
   }
@@ -220,8 +224,8 @@ ir::TypeId Sema::common_reference(const Note& a, const Note& b) {
 
 // May a reference of type `from` go where `to` is wanted? Pointers go to pointers (existing code
 // casts buffers so); typed references only to what their target is or extends.
-bool Sema::reference_fits(ir::TypeId from, ir::TypeId to) const {
-  const ir::TypeTable& types = program.types;
+bool OperatorTypes::reference_fits(ir::TypeId from, ir::TypeId to) const {
+  const ir::TypeTable& types = sema_.program.types;
   if (from == to) return true;
   const ir::TypeId source = types[from].base;
   const ir::TypeId target = types[to].base;

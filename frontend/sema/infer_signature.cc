@@ -1,32 +1,35 @@
 // Standard functions whose operands have the types that their signature names.
 #include "frontend/sema/sema.h"
+#include "frontend/sema/standard_calls.h"
 
 namespace frontend {
 
-Note Sema::infer_by_signature(const stdlib::FunctionRow& row, const std::vector<ExprId>& args) {
+Note StandardCalls::infer_by_signature(const stdlib::FunctionRow& row,
+                                       const std::vector<ExprId>& args) {
   for (uint32_t i = 0; i < args.size(); ++i) {
     const Note& note = infer(args[i]);
     if (takes(stdlib::operand_type(row, i), note)) continue;
-    error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
+    error(DiagnosticCode::kWrongArgument, sema_.tree[args[i]].span,
           "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " is `" +
-              report.type_text(note.type) + "`",
+              sema_.report.type_text(note.type) + "`",
           "it takes " + std::string(row.signature));
     return {};
   }
   Note result;
-  result.type = program.types.elementary(*kind_of_name(stdlib::result_type(row)));
+  result.type = sema_.program.types.elementary(*kind_of_name(stdlib::result_type(row)));
   result.can_trap = row.rule != stdlib::FunctionRule::kTimeSum &&
                     row.rule != stdlib::FunctionRule::kTimeDifference;
   return result;
 }
 
-bool Sema::takes(std::string_view wanted, const Note& argument) const {
-  Traits traits = traits_of(program.types, argument.type);
-  bool strict = options.dialect == Dialect::kIec && argument.flex == Flex::kNone;
+bool StandardCalls::takes(std::string_view wanted, const Note& argument) const {
+  Traits traits = traits_of(sema_.program.types, argument.type);
+  bool strict = sema_.options.dialect == Dialect::kIec && argument.flex == Flex::kNone;
   if (wanted == "ANY_NUM") return traits.number() || (traits.bits && !strict);
   if (wanted == "ANY_INT") return traits.integer || (traits.bits && !strict);
-  ir::TypeId type = program.types.elementary(*kind_of_name(wanted));
-  return implicit_fit(program.types, argument.type, type, options.dialect) != Fit::kNone;
+  ir::TypeId type = sema_.program.types.elementary(*kind_of_name(wanted));
+  return implicit_fit(sema_.program.types, argument.type, type, sema_.options.dialect) !=
+         Fit::kNone;
 }
 
 }  // namespace frontend

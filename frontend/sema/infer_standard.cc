@@ -2,8 +2,12 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/sema/calls.h"
 #include "frontend/sema/operand_warnings.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/standard_calls.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -64,10 +68,11 @@ BinaryOp standard_operator(stdlib::FunctionId id) {
   }
 }
 
-Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
+Note StandardCalls::infer_standard(const Expr& expr, const Callee& callee) {
   const stdlib::FunctionRow& row = *callee.row;
   std::vector<ExprId> args = standard_arguments(expr, row);
-  if (args.empty() && plain_arguments(expr, nullptr).size() + row.fewest != 0) return {};
+  if (args.empty() && ask<Calls>().plain_arguments(expr, nullptr).size() + row.fewest != 0)
+    return {};
   Note all;
   all.known = row.rule == FunctionRule::kClock ? Known::kNo : Known::kByCall;
   for (ExprId arg : args) {
@@ -78,13 +83,13 @@ Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
     all.can_trap = all.can_trap || note.can_trap;
     all.known = std::min(all.known, note.known);
   }
-  if (!takes_typed(callee, args) || takes_power(*this, expr, row, args)) return {};
+  if (!ask<Calls>().takes_typed(callee, args) || takes_power(sema_, expr, row, args)) return {};
   Note note = infer_rule(expr, row, args);
   if (callee.typed.valid() && note.type.valid() && row.rule != FunctionRule::kCompare) {
     note.type = callee.typed;
     note.flex = Flex::kNone;
   }
-  note.width = standard_width(*this, row, args, note, callee.typed.valid());
+  note.width = standard_width(sema_, row, args, note, callee.typed.valid());
   note.known = all.known;
   note.bit_size = 0;
   note.calls = all.calls;
@@ -92,21 +97,21 @@ Note Sema::infer_standard(const Expr& expr, const Callee& callee) {
   note.constant = false;
   note.variable = {};
   note.progress = Progress::kNew;
-  mark_enabled(expr, note);
+  ask<Calls>().mark_enabled(expr, note);
   return note;
 }
 
-Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
-                      const std::vector<ExprId>& args) {
+Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
+                               const std::vector<ExprId>& args) {
   auto argument = [&](uint32_t i) -> const Note& { return infer(args[i]); };
   auto elementary = [&](ir::Kind kind) {
     Note note;
-    note.type = program.types.elementary(kind);
+    note.type = sema_.program.types.elementary(kind);
     return note;
   };
   auto refuse = [&](const Note& note) {
     error(DiagnosticCode::kWrongArgument, expr.span,
-          std::string(row.name) + " is not defined for `" + report.type_text(note.type) + "`",
+          std::string(row.name) + " is not defined for `" + sema_.report.type_text(note.type) + "`",
           "it takes " + std::string(row.signature));
     return Note();
   };
@@ -124,19 +129,20 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
             "call it in a statement of its own");
       return {};
     case FunctionRule::kWeekday: {
-      ir::Kind kind = program.types.root_kind(argument(0).type);
+      ir::Kind kind = sema_.program.types.root_kind(argument(0).type);
       bool clock = kind == ir::Kind::kTod || kind == ir::Kind::kLtod;
-      if (!traits_of(program.types, argument(0).type).date || clock) return refuse(argument(0));
+      if (!traits_of(sema_.program.types, argument(0).type).date || clock)
+        return refuse(argument(0));
       return elementary(ir::Kind::kInt);
     }
     case FunctionRule::kByteOrder: {
       Note note = argument(0);
-      note.type = without_range(program.types, note.type);
+      note.type = without_range(sema_.program.types, note.type);
       note.flex = Flex::kNone;
-      return program.types.is_scalar(note.type) ? note : refuse(note);
+      return sema_.program.types.is_scalar(note.type) ? note : refuse(note);
     }
     case FunctionRule::kValid: {
-      Traits traits = traits_of(program.types, argument(0).type);
+      Traits traits = traits_of(sema_.program.types, argument(0).type);
       bool real = row.id == stdlib::FunctionId::kIsValid;
       if (real ? !traits.real : !traits.bits) return refuse(argument(0));
       return elementary(ir::Kind::kBool);
@@ -145,22 +151,22 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return argument(0);
     case FunctionRule::kNumberSame: {
       Note note = argument(0);
-      Traits traits = traits_of(program.types, note.type);
-      note.type = without_range(program.types, note.type);
+      Traits traits = traits_of(sema_.program.types, note.type);
+      note.type = without_range(sema_.program.types, note.type);
       return traits.number() || traits.duration || traits.bits ? note : refuse(note);
     }
     case FunctionRule::kReal: {
-      Note note = unify_arguments(args, 0);
-      Traits traits = traits_of(program.types, note.type);
+      Note note = ask<OperatorTypes>().unify_arguments(args, 0);
+      Traits traits = traits_of(sema_.program.types, note.type);
       if (traits.real) return note;
       if (!traits.integer && !traits.bits) return note.type.valid() ? refuse(note) : note;
-      if (options.dialect == Dialect::kIec && note.flex == Flex::kNone) return refuse(note);
+      if (sema_.options.dialect == Dialect::kIec && note.flex == Flex::kNone) return refuse(note);
       Note real = elementary(ir::Kind::kLreal);
       real.flex = Flex::kReal;
       return real;
     }
     case FunctionRule::kTrunc: {
-      if (!traits_of(program.types, argument(0).type).real) return refuse(argument(0));
+      if (!traits_of(sema_.program.types, argument(0).type).real) return refuse(argument(0));
       Note note = elementary(ir::Kind::kDint);
       note.can_trap = true;
       return note;
@@ -168,42 +174,46 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
     case FunctionRule::kArithmetic:
     case FunctionRule::kBitwise: {
       const BinaryOp op = standard_operator(row.id);
-      if (op == BinaryOp::kDiv || op == BinaryOp::kMod) check_wrapped(*this, args[0], "divided");
+      if (op == BinaryOp::kDiv || op == BinaryOp::kMod) check_wrapped(sema_, args[0], "divided");
       Note note = argument(0);
       for (uint32_t i = 1; i < args.size() && note.type.valid(); ++i) {
         note = row.rule == FunctionRule::kArithmetic
-                   ? infer_arithmetic(standard_operator(row.id), note, argument(i), expr.span)
-                   : infer_bitwise(standard_operator(row.id), note, argument(i), expr.span);
+                   ? ask<OperatorTypes>().infer_arithmetic(standard_operator(row.id), note,
+                                                           argument(i), expr.span)
+                   : ask<OperatorTypes>().infer_bitwise(standard_operator(row.id), note,
+                                                        argument(i), expr.span);
       }
       return note;
     }
     case FunctionRule::kNot: {
       Note note = argument(0);
-      Traits traits = traits_of(program.types, note.type);
-      note.type = without_range(program.types, note.type);
+      Traits traits = traits_of(sema_.program.types, note.type);
+      note.type = without_range(sema_.program.types, note.type);
       return traits.boolean || traits.bits || traits.integer ? note : refuse(note);
     }
     case FunctionRule::kShift: {
       Note note = argument(0);
-      Traits traits = traits_of(program.types, note.type);
-      Traits count = traits_of(program.types, argument(1).type);
-      note.type = without_range(program.types, note.type);
+      Traits traits = traits_of(sema_.program.types, note.type);
+      Traits count = traits_of(sema_.program.types, argument(1).type);
+      note.type = without_range(sema_.program.types, note.type);
       if (!traits.bits && !traits.integer) return refuse(note);
-      if (row.id == stdlib::FunctionId::kShr) check_wrapped(*this, args[0], "shifted right");
+      if (row.id == stdlib::FunctionId::kShr) check_wrapped(sema_, args[0], "shifted right");
       return count.integer || count.bits ? note : refuse(argument(1));
     }
     case FunctionRule::kSelect:
     case FunctionRule::kMux:
-      return unify_arguments(args, 1);
+      return ask<OperatorTypes>().unify_arguments(args, 1);
     case FunctionRule::kExtreme: {
-      Note note = unify_arguments(args, 0);
-      bool ordered = program.types.is_scalar(note.type) || is_string(program.types, note.type);
+      Note note = ask<OperatorTypes>().unify_arguments(args, 0);
+      bool ordered =
+          sema_.program.types.is_scalar(note.type) || is_string(sema_.program.types, note.type);
       return !note.type.valid() || ordered ? note : refuse(note);
     }
     case FunctionRule::kCompare: {
-      for (const ExprId arg : args) check_wrapped(*this, arg, "compared");
-      Note common = unify_arguments(args, 0);
-      return infer_comparison(standard_operator(row.id), common, common, expr.span);
+      for (const ExprId arg : args) check_wrapped(sema_, arg, "compared");
+      Note common = ask<OperatorTypes>().unify_arguments(args, 0);
+      return ask<OperatorTypes>().infer_comparison(standard_operator(row.id), common, common,
+                                                   expr.span);
     }
     case FunctionRule::kString:
       return infer_string_function(args, row);
@@ -216,31 +226,32 @@ Note Sema::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
 
 // The leading arguments are strings of one kind. The result has room for whatever
 // can come out, so nothing is cut before it is assigned.
-Note Sema::infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
+Note StandardCalls::infer_string_function(const std::vector<ExprId>& args,
+                                          const stdlib::FunctionRow& row) {
   uint32_t strings = string_arguments(row, static_cast<uint32_t>(args.size()));
   uint64_t room = 0;
   bool wide = false;
   for (uint32_t i = 0; i < args.size(); ++i) {
     const Note& note = infer(args[i]);
-    Traits traits = traits_of(program.types, note.type);
-    bool string = is_string(program.types, note.type);
+    Traits traits = traits_of(sema_.program.types, note.type);
+    bool string = is_string(sema_.program.types, note.type);
     bool fits = i < strings ? string : traits.integer || traits.bits;
-    bool is_wide = string && program.types[note.type].kind == ir::Kind::kWstring;
+    bool is_wide = string && sema_.program.types[note.type].kind == ir::Kind::kWstring;
     if (!fits || (string && i > 0 && i < strings && is_wide != wide)) {
-      error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
+      error(DiagnosticCode::kWrongArgument, sema_.tree[args[i]].span,
             "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " is `" +
-                report.type_text(note.type) + "`",
+                sema_.report.type_text(note.type) + "`",
             "it takes " + std::string(row.signature));
       return {};
     }
     if (i < strings) {
-      room += program.types[note.type].capacity;
+      room += sema_.program.types[note.type].capacity;
       wide = is_wide;
     }
   }
   uint32_t capacity = static_cast<uint32_t>(std::min<uint64_t>(room, base::kMaxStringCapacity));
   Note note;
-  note.type = wide ? program.types.wstring(capacity) : program.types.string(capacity);
+  note.type = wide ? sema_.program.types.wstring(capacity) : sema_.program.types.string(capacity);
   return note;
 }
 

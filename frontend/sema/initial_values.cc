@@ -1,6 +1,7 @@
 // Initial values of any type as trees of constants.
 #include <map>
 
+#include "frontend/sema/constants.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -58,16 +59,16 @@ ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherw
     if (note.type.valid() && !note.constant) return sema_.start_values.add(id);
   }
   if (types.is_scalar(type)) {
-    auto bits = sema_.fold_bits(id, type, least_);
+    auto bits = sema_.ask<Constants>().fold_bits(id, type, least_);
     return bits ? sema_.program.constants.scalar(*bits) : ir::ConstId();
   }
   return is_string(types, type) ? text(id, type) : whole(id, type);
 }
 
 ir::ConstId InitialBuilder::text(ExprId id, ir::TypeId type) {
-  auto value = sema_.fold(id, type, least_);
+  auto value = sema_.ask<Constants>().fold(id, type, least_);
   if (!value) return {};
-  auto text = sema_.fit_text(*value, type, sema_.tree[id].span);
+  auto text = sema_.ask<Constants>().fit_text(*value, type, sema_.tree[id].span);
   if (!text) return {};
   return sema_.program.constants.add({0, std::move(*text), {}});
 }
@@ -81,7 +82,7 @@ ir::ConstId InitialBuilder::whole(ExprId id, ir::TypeId type) {
     const Note& note = sema_.infer(id);
     if (!note.type.valid()) return {};
     if (note.type == type && note.known >= least_ && !sema_.program.types.is_instance(type)) {
-      auto part = sema_.initial_part(id);
+      auto part = sema_.ask<Constants>().initial_part(id);
       if (!part) return {};
       if (part->init.valid()) return part->init;
       return sema_.program.constants.add({});
@@ -127,7 +128,7 @@ bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>
     values.push_back(id);
     return true;
   }
-  auto count = sema_.fold_integer(item.operand);
+  auto count = sema_.ask<Constants>().fold_integer(item.operand);
   if (!count) return false;
   if (*count < 0) {
     sema_.error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
@@ -165,7 +166,8 @@ bool InitialBuilder::element(ExprId id, uint64_t rounds, ArrayList& list) {
   bool partial = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
   uint64_t step = partial && list.otherwise.valid() ? 1 : rounds;
   for (uint64_t end = list.at + rounds; list.at < end; list.at += step) {
-    ir::ConstId init = element_value(id, sema_.listed(list.otherwise, list.at), list);
+    ir::ConstId init =
+        element_value(id, sema_.ask<Constants>().listed(list.otherwise, list.at), list);
     if (!init.valid()) return false;
     list.elements.push_back({static_cast<uint32_t>(list.at), static_cast<uint32_t>(step), init});
   }
@@ -181,10 +183,10 @@ ir::ConstId InitialBuilder::element_value(ExprId id, ir::ConstId otherwise, Arra
 // One bit of the byte that holds it, the others as they are so far.
 bool InitialBuilder::set_bit(ExprId id, const Slot& slot, ir::TypeId type,
                              std::vector<ir::ConstElement>& elements) {
-  auto bit = sema_.fold_bits(id, slot.type, least_);
+  auto bit = sema_.ask<Constants>().fold_bits(id, slot.type, least_);
   if (!bit) return false;
   auto index = static_cast<uint32_t>(slot.member);
-  ir::ConstId before = sema_.member_default(type, index);
+  ir::ConstId before = sema_.ask<Constants>().member_default(type, index);
   for (const ir::ConstElement& element : elements) {
     if (element.first == index) before = element.value;
   }
@@ -249,8 +251,8 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
       if (!set_bit(arg.value, slot, type, value.elements)) return {};
       continue;
     }
-    ir::ConstId before = sema_.listed(otherwise, index);
-    if (!before.valid()) before = sema_.member_default(type, index);
+    ir::ConstId before = sema_.ask<Constants>().listed(otherwise, index);
+    if (!before.valid()) before = sema_.ask<Constants>().member_default(type, index);
     ir::ConstId init = this->value(arg.value, slot.type, before);
     if (!init.valid()) return {};
     value.elements.push_back({index, 1, init});
@@ -258,8 +260,9 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
   return sema_.program.constants.add(std::move(value));
 }
 
-ir::ConstId Sema::initial_value(ExprId id, ir::TypeId type, ir::ConstId otherwise, Known least) {
-  return InitialBuilder(*this, least).value(id, type, otherwise);
+ir::ConstId Constants::initial_value(ExprId id, ir::TypeId type, ir::ConstId otherwise,
+                                     Known least) {
+  return InitialBuilder(sema_, least).value(id, type, otherwise);
 }
 
 }  // namespace frontend

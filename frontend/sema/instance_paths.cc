@@ -1,4 +1,5 @@
 #include "frontend/sema/instance_paths.h"
+#include "frontend/sema/constants.h"
 
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
@@ -142,7 +143,7 @@ bool InstancePaths::element(const Expr& expr, Path& path) {
   uint64_t flat = 0;
   path.text += "[";
   for (uint32_t i = 0; i < dims.size(); ++i) {
-    auto index = sema_.fold_integer(sema_.tree.expr_lists[expr.list.first + i]);
+    auto index = sema_.ask<Constants>().fold_integer(sema_.tree.expr_lists[expr.list.first + i]);
     if (!index) return false;
     if (*index < dims[i].low || *index > dims[i].high) {
       sema_.error(DiagnosticCode::kIndexOutOfBounds, expr.span,
@@ -243,11 +244,11 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
 ir::ConstId InstancePaths::with_initial(ir::ConstId before, ir::TypeId type,
                                         const std::vector<uint32_t>& steps, size_t at,
                                         ExprId init) {
-  if (at == steps.size()) return sema_.initial_value(init, type, before);
+  if (at == steps.size()) return sema_.ask<Constants>().initial_value(init, type, before);
   uint32_t step = steps[at];
   bool array = sema_.program.types[type].kind == ir::Kind::kArray;
-  ir::ConstId inner = sema_.listed(before, step);
-  if (!inner.valid() && !array) inner = sema_.member_default(type, step);
+  ir::ConstId inner = sema_.ask<Constants>().listed(before, step);
+  if (!inner.valid() && !array) inner = sema_.ask<Constants>().member_default(type, step);
   ir::TypeId part =
       array ? sema_.program.types[type].base : sema_.program.types[type].members[step].type;
   ir::ConstId made = with_initial(inner, part, steps, at + 1, init);

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "frontend/sema/old_names.h"
+#include "frontend/sema/open_functions.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/test_build.h"
@@ -55,7 +56,7 @@ void Sema::resolve_declarations() {
   // Grows while library blocks are discovered.
   for (uint32_t i = 0; i < declared.pous.size(); ++i) resolve_interface(i);
   declared.complete = true;
-  check_overloads();
+  ask<OpenFunctions>().check_overloads();
   objects.check();
   check_containment();
 }

@@ -1,4 +1,5 @@
 #include "frontend/sema/operand_warnings.h"
+#include "frontend/sema/constants.h"
 
 #include <algorithm>
 
@@ -77,7 +78,7 @@ void check_right_operand(Sema& sema, const Expr& expr) {
 }
 
 void check_divisor(Sema& sema, ExprId divisor, bool whole) {
-  const auto value = sema.fold(divisor, {});
+  const auto value = sema.ask<Constants>().fold(divisor, {});
   if (!value || value->integer != 0 || value->real != 0) return;
   // A constant that has a name may be another one some day, and be asked before.
   if (whole && sema.tree[divisor].kind == ExprKind::kLiteral) {

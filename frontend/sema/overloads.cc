@@ -1,4 +1,6 @@
 // Functions that share a name: the one is called whose parameters fit the arguments best.
+#include "frontend/sema/calls.h"
+#include "frontend/sema/open_functions.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -34,47 +36,49 @@ uint32_t literal_distance(const Traits& to, Flex flex) {
 }  // namespace
 
 // nullopt: the function cannot be called like this.
-std::optional<uint32_t> Sema::distance(const Expr& call, uint32_t pou) {
-  const PouInfo& info = declared.pous[pou];
+std::optional<uint32_t> OpenFunctions::distance(const Expr& call, uint32_t pou) {
+  const PouInfo& info = sema_.declared.pous[pou];
   std::vector<Match> matches = match(call, info);
-  if (matches.size() != plain_arguments(call, &info).size()) return std::nullopt;
+  if (matches.size() != ask<Calls>().plain_arguments(call, &info).size()) return std::nullopt;
   uint32_t sum = info.open ? kLossless : 0;
   uint32_t inputs = 0;
   uint32_t given = 0;
   for (VarId id : info.variables) {
-    VarSection section = declared.variables[id.index].section;
+    VarSection section = sema_.declared.variables[id.index].section;
     if (section == VarSection::kInput || section == VarSection::kInOut) ++inputs;
   }
   for (const Match& match : matches) {
-    const Variable& parameter = declared.variables[match.parameter.index];
+    const Variable& parameter = sema_.declared.variables[match.parameter.index];
     if (!is_parameter(parameter.section)) return std::nullopt;
     if (parameter.section != VarSection::kOutput) ++given;
     if (info.open) continue;
     ir::TypeId wanted = resolve(match.parameter).type;
     const Note& note = infer(match.arg->value);
     if (!wanted.valid() || !note.type.valid() || note.type == wanted) continue;
-    if (note.flex != Flex::kNone && literal_fits(traits_of(program.types, wanted), note.flex)) {
-      sum += literal_distance(traits_of(program.types, wanted), note.flex);
+    if (note.flex != Flex::kNone &&
+        literal_fits(traits_of(sema_.program.types, wanted), note.flex)) {
+      sum += literal_distance(traits_of(sema_.program.types, wanted), note.flex);
       continue;
     }
     Fit fit = parameter.section == VarSection::kOutput
-                  ? implicit_fit(program.types, wanted, note.type, options.dialect)
-                  : implicit_fit(program.types, note.type, wanted, options.dialect);
+                  ? implicit_fit(sema_.program.types, wanted, note.type, sema_.options.dialect)
+                  : implicit_fit(sema_.program.types, note.type, wanted, sema_.options.dialect);
     if (fit == Fit::kNone) return std::nullopt;
     if (fit == Fit::kNarrowing) sum += kNarrowing;
-    if (fit != Fit::kLossless || !program.types.is_scalar(wanted)) continue;
-    bool other = traits_of(program.types, wanted).real != traits_of(program.types, note.type).real;
-    uint32_t width = ir::scalar_size(program.types.scalar(wanted));
+    if (fit != Fit::kLossless || !sema_.program.types.is_scalar(wanted)) continue;
+    bool other = traits_of(sema_.program.types, wanted).real !=
+                 traits_of(sema_.program.types, note.type).real;
+    uint32_t width = ir::scalar_size(sema_.program.types.scalar(wanted));
     sum += kLossless + width + (other ? kOtherClass : 0);
   }
   return sum + (inputs - given);  // left out inputs count little: the shorter function is meant
 }
 
-uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
+uint32_t OpenFunctions::select_overload(const Expr& call, uint32_t first) {
   uint32_t best = kNoPou;
   uint32_t best_distance = 0;
   bool ambiguous = false;
-  for (uint32_t pou = first; pou != kNoPou; pou = declared.pous[pou].overload) {
+  for (uint32_t pou = first; pou != kNoPou; pou = sema_.declared.pous[pou].overload) {
     std::optional<uint32_t> found = distance(call, pou);
     if (!found) continue;
     if (best != kNoPou && *found > best_distance) continue;
@@ -82,11 +86,11 @@ uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
     best = pou;
     best_distance = *found;
   }
-  std::string name = "`" + std::string(declared.pous[first].name) + "`";
+  std::string name = "`" + std::string(sema_.declared.pous[first].name) + "`";
   if (best == kNoPou) {
     std::string all;
-    for (uint32_t pou = first; pou != kNoPou; pou = declared.pous[pou].overload) {
-      all += (all.empty() ? "" : ", ") + signature(declared.pous[pou]);
+    for (uint32_t pou = first; pou != kNoPou; pou = sema_.declared.pous[pou].overload) {
+      all += (all.empty() ? "" : ", ") + signature(sema_.declared.pous[pou]);
     }
     error(DiagnosticCode::kNoOverload, call.span, "no " + name + " takes these arguments",
           "there are " + all);
@@ -99,34 +103,34 @@ uint32_t Sema::select_overload(const Expr& call, uint32_t first) {
 }
 
 // "Area(REAL,REAL)"
-std::string Sema::signature(const PouInfo& pou) {
+std::string OpenFunctions::signature(const PouInfo& pou) {
   std::string text;
   for (VarId id : pou.variables) {
-    const Variable& variable = declared.variables[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     if (id == pou.result || !is_parameter(variable.section)) continue;
-    const Spec& spec = tree[variable.decl->spec];
+    const Spec& spec = sema_.tree[variable.decl->spec];
     std::string type = pou.open && spec.kind == SpecKind::kNamed ? std::string(spec.name.text)
                        : pou.open                                ? "?"
-                                  : report.type_text(resolve(id).type);
+                                  : sema_.report.type_text(resolve(id).type);
     text += (text.empty() ? "" : ",") + type;
   }
   return std::string(pou.name) + "(" + text + ")";
 }
 
 // Names in the program are unique: further functions are called after their parameters.
-void Sema::check_overloads() {
-  for (uint32_t first = 0; first < declared.pous.size(); ++first) {
-    for (uint32_t pou = declared.pous[first].overload; pou != kNoPou;
-         pou = declared.pous[pou].overload) {
-      std::string text = signature(declared.pous[pou]);
-      if (ir::same_name(text, signature(declared.pous[first]))) {
-        error(DiagnosticCode::kDuplicateName, declared.pous[pou].decl->name.span,
+void OpenFunctions::check_overloads() {
+  for (uint32_t first = 0; first < sema_.declared.pous.size(); ++first) {
+    for (uint32_t pou = sema_.declared.pous[first].overload; pou != kNoPou;
+         pou = sema_.declared.pous[pou].overload) {
+      std::string text = signature(sema_.declared.pous[pou]);
+      if (ir::same_name(text, signature(sema_.declared.pous[first]))) {
+        error(DiagnosticCode::kDuplicateName, sema_.declared.pous[pou].decl->name.span,
               "`" + text + "` is declared twice",
               "functions of one name differ in their parameters");
         return;
       }
-      if (!declared.pous[pou].open)
-        program.pous[declared.pous[pou].id.index].name = std::move(text);
+      if (!sema_.declared.pous[pou].open)
+        sema_.program.pous[sema_.declared.pous[pou].id.index].name = std::move(text);
     }
   }
 }

@@ -71,49 +71,12 @@ class Sema {
     Note& known = facts.of(scope_, expr);
     return known.progress == Progress::kDone ? known : infer_now(expr, known);
   }
-  Callee callee(const Expr& call);
-  // Does a conversion to a string give the names of this enumeration's literals?
-  bool prints_names(ir::TypeId enumeration) const;
-  // In the order of the parameters; none when reported. Outputs not connected are invalid.
-  std::vector<ExprId> standard_arguments(const Expr& call, const stdlib::FunctionRow& row);
-  // Is this the implicit EN or ENO of the callee (null: a standard function)?
-  bool is_enable(const Arg& arg, const PouInfo* callee) const;
-  ExprId conversion_argument(const Expr& call) const;  // invalid when there is not just one
-  // Type in which all arguments meet.
-  Note infer_common(const std::vector<ExprId>& args) { return unify_arguments(args, 0); }
-  // Type of the operands of a binary operator that have to agree.
-  Note unify(const Note& a, const Note& b, base::SourceSpan span);
-  // A type, or the type of a variable, as argument of SIZEOF.
-  ir::TypeId type_of_argument(ExprId argument);
-  bool reference_fits(ir::TypeId from, ir::TypeId to) const;
   ir::TypeId type_of_direct(const ir::DirectAddress& address) const;
   // Is a part of such a structure or array at %I*? Then code cannot assign the whole.
   bool holds_input(ir::TypeId type) const;
 
   // Has the value that an instruction list keeps the type of its result? (infer_result.cc)
   bool check_result(const Stmt& assignment);
-
-  // --- constants (fold*.cc, initial_values.cc)
-  // nullopt when reported. `context` steers literals; may be invalid.
-  std::optional<Constant> fold(ExprId expr, ir::TypeId context, Known least = Known::kByCall);
-  std::optional<uint64_t> fold_bits(ExprId expr, ir::TypeId target, Known least = Known::kByCall);
-  std::optional<int64_t> fold_integer(ExprId expr);
-  // Bits of a constant as a value of scalar type `target`; reports what does not fit.
-  std::optional<uint64_t> fit(const Constant& value, ir::TypeId target, base::SourceSpan span);
-  // Bits for a signed integer, a negative number for a bit string: taken as they are, with a
-  // warning, unless the dialect is the standard's own.
-  std::optional<uint64_t> same_bits(const Constant& value, Wide integer, ir::TypeId target,
-                                    base::SourceSpan span);
-  std::optional<std::string> fit_text(const Constant& value, ir::TypeId target,
-                                      base::SourceSpan span);
-  // Initial value of any type; invalid when reported. What a list leaves out keeps its
-  // value in `otherwise`, the default of the declared type.
-  ir::ConstId initial_value(ExprId expr, ir::TypeId type, ir::ConstId otherwise,
-                            Known least = Known::kInitially);
-  // What an initial value says of one element or member; invalid: nothing.
-  ir::ConstId listed(ir::ConstId list, uint64_t index) const;
-  // The initial value of a variable, or of a part of one, with `known` above kNo.
-  std::optional<TypeUse> initial_part(ExprId expr);
 
   // --- messages, from the scope that is looked at
   void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {}) {
@@ -166,22 +129,7 @@ class Sema {
   Namespaces namespaces{*this};
   Pools pools{*this};
 
-  std::vector<Match> match(const Expr& call, const PouInfo& callee) const;
-  Callee select_function(const Expr& call, uint32_t first);
-  uint32_t select_overload(const Expr& call, uint32_t first);
-  std::optional<uint32_t> distance(const Expr& call, uint32_t pou);
-  Callee bind_open(const Expr& call, uint32_t pou);
-  bool bind_generic(const Match& match, const Spec& spec, NameMap<Note>& generic);
-  bool bind_array(const Match& match, const Spec& spec, NameMap<Note>& generic);
-  uint32_t string_variant(const Expr& call, uint32_t pou);
   using ParameterTypes = std::vector<ir::TypeId>;  // by number in PouInfo::variables
-  uint32_t instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir::TypeId> generic);
-  void check_overloads();
-  std::string signature(const PouInfo& pou);
-
-  // bounds.cc
-  Note infer_bound(const Expr& expr, bool upper);
-  std::optional<int64_t> bound_of(const Expr& expr, bool upper);
 
   // interface.cc
   void resolve_interface(uint32_t pou);
@@ -215,10 +163,6 @@ class Sema {
   // infer_reference.cc
   Note infer_deref(const Expr& expr);
   Note infer_pointer_index(const Expr& expr, const Note& operand);
-  Note infer_reference_call(const Expr& expr, ReferenceCall call);
-  Note infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& right,
-                                base::SourceSpan span);
-  ir::TypeId common_reference(const Note& a, const Note& b);
 
   // structures.cc
   struct StructBuild;
@@ -230,10 +174,6 @@ class Sema {
 
   void place_global(VarId id);
   void check_edge(const Variable& variable);
-
-  // enable.cc
-  std::vector<const Arg*> plain_arguments(const Expr& call, const PouInfo* callee) const;
-  void mark_enabled(const Expr& call, Note& note) const;
 
   // infer*.cc
   const Note& infer_now(ExprId id, Note& note);
@@ -255,37 +195,8 @@ class Sema {
   Note infer_assign(const Expr& expr);
   Note infer_result(const Expr& expr);
   Note infer_unary(const Expr& expr);
-  Note infer_binary(const Expr& expr);
-  Note infer_call(const Expr& expr);
-  Note infer_standard(const Expr& expr, const Callee& callee);
-  Note infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
-                  const std::vector<ExprId>& args);
-  bool standard_argument(const Arg& arg, const stdlib::FunctionRow& row, uint32_t number,
-                         std::vector<ExprId>& ordered);
-  Note infer_by_signature(const stdlib::FunctionRow& row, const std::vector<ExprId>& args);
-  bool takes(std::string_view wanted, const Note& argument) const;
-  Note infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
-  Note infer_conversion(const Expr& expr, const Conversion& conversion);
-  std::optional<Conversion> conversion_to_enumeration(std::string_view name);
-  bool check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
-                        const Note& argument);
-  Note infer_arithmetic(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
-  Note infer_time_arithmetic(BinaryOp op, const Note& left, const Note& right,
-                             base::SourceSpan span);
-  Note infer_bitwise(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
-  Note infer_comparison(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
-  Note unify_arguments(const std::vector<ExprId>& args, uint32_t first);
-  Callee named_callee(const Expr& call, const Expr& head);
-  Callee typed_callee(std::string_view name) const;  // typed_functions.cc
-  bool takes_typed(const Callee& callee, const std::vector<ExprId>& args);
   Note infer_character(const Expr& expr, Note note);
   void check_index_list(const Expr& expr, const ir::Type& array);
-
-  // initial_part.cc
-  ir::ConstId member_default(ir::TypeId type, uint32_t member);
-  std::optional<TypeUse> initial_variable(const Expr& expr, VarId id);
-  std::optional<TypeUse> initial_member(const Expr& expr);
-  std::optional<TypeUse> initial_element(const Expr& expr);
 
   // called_programs.cc
   VarId program_variable(std::string_view name, bool called);

@@ -1,7 +1,9 @@
 // Arguments of standard functions: positional, or by the names in the registry.
 #include <algorithm>
 
+#include "frontend/sema/calls.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/standard_calls.h"
 
 namespace frontend {
 namespace {
@@ -52,9 +54,10 @@ std::string count_text(const stdlib::FunctionRow& row) {
 
 }  // namespace
 
-std::vector<ExprId> Sema::standard_arguments(const Expr& call, const stdlib::FunctionRow& row) {
+std::vector<ExprId> StandardCalls::standard_arguments(const Expr& call,
+                                                      const stdlib::FunctionRow& row) {
   bool unlimited = row.most == 0 && row.fewest != 0;
-  std::vector<const Arg*> args = plain_arguments(call, nullptr);
+  std::vector<const Arg*> args = ask<Calls>().plain_arguments(call, nullptr);
   if (args.size() < row.fewest || (!unlimited && args.size() > row.most)) {
     error(DiagnosticCode::kWrongArgumentCount, call.span,
           std::string(row.name) + " with " + std::to_string(args.size()) + " arguments",
@@ -73,8 +76,8 @@ std::vector<ExprId> Sema::standard_arguments(const Expr& call, const stdlib::Fun
   return ordered;
 }
 
-bool Sema::standard_argument(const Arg& arg, const stdlib::FunctionRow& row, uint32_t number,
-                             std::vector<ExprId>& ordered) {
+bool StandardCalls::standard_argument(const Arg& arg, const stdlib::FunctionRow& row,
+                                      uint32_t number, std::vector<ExprId>& ordered) {
   Parameter parameter = find_parameter(row.parameters, arg.name.text, static_cast<int32_t>(number));
   auto at = static_cast<uint32_t>(parameter.position);
   if (parameter.position < 0 || at >= ordered.size()) {

@@ -1,4 +1,5 @@
 #include "frontend/sema/start_values.h"
+#include "frontend/sema/constants.h"
 
 #include "base/hash.h"
 #include "frontend/sema/sema.h"
@@ -59,7 +60,7 @@ bool StartValues::look_inside(ir::TypeId id, ir::ConstId init) {
   for (uint32_t i = 0; i < type.members.size(); ++i) {
     const ir::Member& member = type.members[i];
     if (!ir::is_listed(member)) continue;
-    const ir::ConstId listed = sema_.listed(init, i);
+    const ir::ConstId listed = sema_.ask<Constants>().listed(init, i);
     const bool own = ir::is_structure(type.kind) || listed.valid();
     if (own && inside(member.type, listed.valid() ? listed : member.init)) return true;
   }

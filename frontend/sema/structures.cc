@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "frontend/sema/constants.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
@@ -132,7 +133,8 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
   member.type = use.type;
   check_binding(field, use.type);
   const bool saved = std::exchange(facts.binds_at_start, !build.type.overlap);
-  member.init = field.init.valid() ? initial_value(field.init, use.type, use.init) : use.init;
+  member.init = field.init.valid() ? ask<Constants>().initial_value(field.init, use.type, use.init)
+                                   : use.init;
   facts.binds_at_start = saved;
   if (!bit) close_bits(build);
   if (field.has_address) {

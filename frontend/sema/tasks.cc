@@ -1,5 +1,6 @@
 // TASK: when the programs run.
 #include "frontend/sema/configuration.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/task_attributes.h"
@@ -23,7 +24,8 @@ void Configuration::add_task(const TaskDecl& decl) {
   task.period_ns = decl.single.valid() ? 0 : kDefaultPeriodNs;
   if (decl.single.valid()) task.event = event_of(decl.single);
   if (decl.interval.valid()) {
-    auto period = sema_.fold_bits(decl.interval, sema_.program.types.elementary(ir::Kind::kTime));
+    auto period = sema_.ask<Constants>().fold_bits(decl.interval,
+                                                   sema_.program.types.elementary(ir::Kind::kTime));
     task.period_ns = period ? static_cast<int64_t>(*period) : kDefaultPeriodNs;
     // With SINGLE, an interval of 0 means that edges alone release the task.
     const bool too_long = task.period_ns > ir::kLongestTimeNs;
@@ -35,7 +37,7 @@ void Configuration::add_task(const TaskDecl& decl) {
     }
   }
   if (decl.priority.valid()) {
-    int64_t priority = sema_.fold_integer(decl.priority).value_or(0);
+    int64_t priority = sema_.ask<Constants>().fold_integer(decl.priority).value_or(0);
     if (priority < 0 || priority > kMaxPriority) {
       error(DiagnosticCode::kBadPriority, decl.span,
             "task " + quoted(decl.name) + " has the priority " + std::to_string(priority),

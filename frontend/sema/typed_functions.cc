@@ -1,4 +1,7 @@
 // Typed names of overloaded standard functions (IEC 61131-3 table 21): ADD_INT, MAX_REAL, GT_DINT.
+#include "frontend/sema/calls.h"
+#include "frontend/sema/operator_types.h"
+#include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -59,35 +62,35 @@ TypedArguments typed_arguments(FunctionRule rule, size_t count) {
 
 }  // namespace
 
-Callee Sema::typed_callee(std::string_view name) const {
+Callee Calls::typed_callee(std::string_view name) const {
   Callee callee;
   size_t cut = name.rfind('_');
   if (cut == std::string_view::npos) return callee;
-  auto row = library.functions.find(name.substr(0, cut));
+  auto row = sema_.library.functions.find(name.substr(0, cut));
   auto kind = kind_of_name(name.substr(cut + 1));
-  if (row == library.functions.end() || !kind) return callee;
-  ir::TypeId type = program.types.elementary(*kind);
-  if (!program.types.is_scalar(type)) return callee;
-  if (!has_typed_name(*row->second, traits_of(program.types, type))) return callee;
+  if (row == sema_.library.functions.end() || !kind) return callee;
+  ir::TypeId type = sema_.program.types.elementary(*kind);
+  if (!sema_.program.types.is_scalar(type)) return callee;
+  if (!has_typed_name(*row->second, traits_of(sema_.program.types, type))) return callee;
   callee.kind = Callee::Kind::kStandard;
   callee.row = row->second;
   callee.typed = type;
   return callee;
 }
 
-bool Sema::takes_typed(const Callee& callee, const std::vector<ExprId>& args) {
+bool Calls::takes_typed(const Callee& callee, const std::vector<ExprId>& args) {
   if (!callee.typed.valid()) return true;
   Note wanted;
   wanted.type = callee.typed;
   TypedArguments typed = typed_arguments(callee.row->rule, args.size());
   for (size_t i = typed.first; i < typed.end && i < args.size(); ++i) {
     const Note& argument = infer(args[i]);
-    Note common = unify(wanted, argument, tree[args[i]].span);
+    Note common = ask<OperatorTypes>().unify(wanted, argument, sema_.tree[args[i]].span);
     if (!common.type.valid()) return false;
     if (common.type == callee.typed) continue;
-    error(DiagnosticCode::kWrongArgument, tree[args[i]].span,
-          "argument " + std::to_string(i + 1) + " is `" + report.type_text(argument.type) +
-              "`, not `" + report.type_text(callee.typed) + "`",
+    error(DiagnosticCode::kWrongArgument, sema_.tree[args[i]].span,
+          "argument " + std::to_string(i + 1) + " is `" + sema_.report.type_text(argument.type) +
+              "`, not `" + sema_.report.type_text(callee.typed) + "`",
           "convert it, or call " + std::string(callee.row->name) + ", which takes any type");
     return false;
   }

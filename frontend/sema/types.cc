@@ -2,6 +2,7 @@
 // for their content; structures and enumerations are types of their own.
 #include "base/limits.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
 
@@ -36,7 +37,7 @@ TypeUse Sema::resolve_type(SpecId id) {
   // The default may name the type itself: Colour : (Red, Green) := Green.
   info.progress = Progress::kDone;
   if (use.type.valid() && info.default_value.valid()) {
-    info.use.init = initial_value(info.default_value, use.type, use.init);
+    info.use.init = ask<Constants>().initial_value(info.default_value, use.type, use.init);
     if (spec.kind == SpecKind::kEnum) program.types.edit(use.type).init = info.use.init;
   }
   --facts.depth;
@@ -120,7 +121,7 @@ TypeUse Sema::resolve_named(const Spec& spec) {
 TypeUse Sema::resolve_string(const Spec& spec) {
   int64_t capacity = kDefaultStringCapacity;
   if (spec.length.valid()) {
-    auto length = fold_integer(spec.length);
+    auto length = ask<Constants>().fold_integer(spec.length);
     if (!length) return {};
     capacity = *length;
   }
@@ -149,8 +150,8 @@ TypeUse Sema::resolve_array(const Spec& spec) {
   std::vector<ir::Dimension> dims;
   uint64_t elements = 1;
   for (const DimSpec& dim : spec.dims) {
-    auto low = fold_integer(dim.low);
-    auto high = fold_integer(dim.high);
+    auto low = ask<Constants>().fold_integer(dim.low);
+    auto high = ask<Constants>().fold_integer(dim.high);
     if (!low || !high) return {};
     if (*low > *high) {
       error(DiagnosticCode::kBadBounds, tree[dim.low].span,
@@ -188,8 +189,8 @@ TypeUse Sema::resolve_subrange(const Spec& spec) {
           "a subrange of `" + report.type_text(base.type) + "`", "subranges need an integer type");
     return {};
   }
-  auto low = fold_bits(spec.low, base.type);
-  auto high = fold_bits(spec.high, base.type);
+  auto low = ask<Constants>().fold_bits(spec.low, base.type);
+  auto high = ask<Constants>().fold_bits(spec.high, base.type);
   if (!low || !high) return {};
   int64_t from = static_cast<int64_t>(*low);
   int64_t to = static_cast<int64_t>(*high);
@@ -235,7 +236,7 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
       return {};
     }
     if (enumerator.value.valid()) {
-      auto value = fold_integer(enumerator.value);
+      auto value = ask<Constants>().fold_integer(enumerator.value);
       if (!value) return {};
       next = *value;
     }

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "frontend/parse/il_operators.h"
+#include "frontend/sema/constants.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 
@@ -121,7 +122,7 @@ void Sema::resolve_initial(Variable& variable) {
                          (variable.section == VarSection::kInput || variable.constant);
   const bool saved = std::exchange(facts.binds_at_start, !variable.constant && !parameter);
   const Known least = at_call && variable.constant ? Known::kByCall : Known::kInitially;
-  variable.init = initial_value(init, variable.type, variable.init, least);
+  variable.init = ask<Constants>().initial_value(init, variable.type, variable.init, least);
   facts.binds_at_start = saved;
 }
 
