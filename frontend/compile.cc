@@ -1,6 +1,7 @@
 #include "frontend/compile.h"
 #include "frontend/sema/collection.h"
 #include "frontend/sema/configuration.h"
+#include "frontend/sema/interfaces.h"
 
 #include <algorithm>
 #include <memory>
@@ -92,9 +93,9 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
 }
 
 void declare_all(Sema& sema) {
-  sema.report_not_supported();
+  sema.ask<Interfaces>().report_not_supported();
   sema.ask<Collection>().collect();
-  sema.resolve_declarations();
+  sema.ask<Interfaces>().resolve_declarations();
   Migrations(sema).collect();
   sema.ask<Configuration>().configure();
   sema.objects.add_start();
@@ -111,7 +112,7 @@ void check_uses(Sema& sema) {
 }
 
 void check_whole(Sema& sema) {
-  sema.finish_programs();
+  sema.ask<Interfaces>().finish_programs();
   Migrations(sema).check_code();
   sema.objects.check_recursion();
   sema.program.overrides = ir::find_overrides(sema.program);

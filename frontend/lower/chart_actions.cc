@@ -1,6 +1,7 @@
 // Actions of charts: what steps ask of them, whether they run (action control of IEC 61131-3),
 // and their statements.
 #include "frontend/lower/chart.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -214,7 +215,7 @@ void ChartBody::control(uint32_t number) {
 // An action that is a BOOL variable.
 std::optional<Target> ChartBody::variable_of(const sfc::Action& action) {
   const Expr& name = tree_[action.target];
-  VarId id = sema_.find_variable(name);
+  VarId id = sema_.ask<Variables>().find_variable(name);
   if (!id.valid()) {
     NearestName nearest(name.name.text);
     for (const auto& entry : body_.info_.names) {

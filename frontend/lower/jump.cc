@@ -1,6 +1,7 @@
 // JMP and labels. A label is reached from its own statement list and from everything
 // inside; nothing jumps into a block.
 #include "frontend/lower/body.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 
@@ -11,7 +12,7 @@ Body::Labels Body::labels_of(Range32 list) {
     if (stmt.kind != StmtKind::kLabel) continue;
     const Name name = tree_.name(stmt.name);
     // `x : f(y);` is a slip of the finger, and would be a label and a call.
-    if (sema_.find_variable(name).valid()) {
+    if (sema_.ask<Variables>().find_variable(name).valid()) {
       sema_.error(DiagnosticCode::kDuplicateName, name.span,
                   "`" + std::string(name.text) + "` is a variable and cannot be a label",
                   "write `:=` to assign to it");

@@ -1,6 +1,7 @@
 // Mocks: what tests put in the place of functions and of function block bodies.
 #include "frontend/lower/body.h"
 #include "frontend/sema/test_build.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -20,7 +21,7 @@ ir::Step member(uint32_t index) {
 std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slot) {
   const Expr& expr = tree_[target];
   const bool plain = expr.kind == ExprKind::kName;
-  if (!plain || !sema_.find_variable(expr.name).valid()) {
+  if (!plain || !sema_.ask<Variables>().find_variable(expr.name).valid()) {
     const PouInfo* function =
         sema_.declared.find_pou(sema_.namespaces.find(NameSort::kDeclaration, expr));
     if (function != nullptr && function->decl->kind == PouKind::kFunction) {

@@ -5,6 +5,7 @@
 #include "frontend/sema/common_uses.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/variables.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -97,7 +98,7 @@ ir::Place Body::raw_place(ExprId id) {
       return dereferenced_place(expr);
     case ExprKind::kDirect:
       if (const AddressView* view = direct_view(sema_, expr)) return view_place(*view);
-      return global_place(sema_.direct_member(expr));
+      return global_place(sema_.ask<Variables>().direct_member(expr));
     case ExprKind::kCall:
       return call_place(id, expr);
     case ExprKind::kAssign:
@@ -209,7 +210,7 @@ std::optional<Target> Body::target(ExprId id) {
   const bool property =
       sema_.infer(whole).property != kNoPou && !sema_.infer(whole).reference.valid();
   if (!property && !check_writable(id)) return std::nullopt;
-  if (!types().is_scalar(note.type) && sema_.holds_input(note.type)) {
+  if (!types().is_scalar(note.type) && sema_.ask<Variables>().holds_input(note.type)) {
     sema_.error(DiagnosticCode::kAssignToInput, tree_[id].span,
                 "`" + sema_.report.type_text(note.type) + "` has inputs (AT %I*) among its members",
                 "assign the other members one by one");

@@ -1,6 +1,7 @@
 // The current result of an instruction list. Within straight code it is a value, at a label a
 // local that every way there assigns.
 #include "frontend/lower/body.h"
+#include "frontend/sema/expressions.h"
 
 namespace frontend {
 
@@ -16,7 +17,7 @@ void Body::infer_results(Range32 list) {
 }
 
 void Body::keep_result(const Stmt& stmt) {
-  if (!sema_.check_result(stmt)) return;
+  if (!sema_.ask<Expressions>().check_result(stmt)) return;
   ir::TypeId type = sema_.infer(stmt.target).type;
   uint32_t number = tree_[stmt.target].number;
   bool single = !tree_.results[number].at_label && type.valid() && types().is_scalar(type);

@@ -2,6 +2,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/operand_warnings.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 
@@ -171,7 +172,7 @@ ir::ValueId Body::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset,
   if (size != 1) {
     ir::DirectAddress part;
     part.bit_size = size;
-    return machine_convert(bits, machine, scalar(sema_.type_of_direct(part)));
+    return machine_convert(bits, machine, scalar(sema_.ask<Variables>().type_of_direct(part)));
   }
   bits = build_.binary(ir::Op::kAnd, machine, bits, build_.constant(machine, 1));
   return build_.unary(ir::Op::kToBool, ir::Scalar::kBool, bits);

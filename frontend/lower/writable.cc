@@ -3,6 +3,7 @@
 
 #include "frontend/lower/body.h"
 #include "frontend/sema/common_uses.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -21,7 +22,7 @@ bool Body::has_address(ExprId id) {
   const Note& note = sema_.infer(id);
   if (note.reference.valid()) return true;
   if (note.property != kNoPou || is_known(note) || note.bit_size != 0 || is_character(id) ||
-      sema_.holds_input(note.type)) {
+      sema_.ask<Variables>().holds_input(note.type)) {
     return false;
   }
   if (note.variable.valid()) {
@@ -121,7 +122,7 @@ bool Body::check_writable_field(const Expr& expr) {
 }
 
 bool Body::check_writable_name(const Expr& expr) {
-  VarId id = sema_.find_variable(expr);
+  VarId id = sema_.ask<Variables>().find_variable(expr);
   if (id.valid()) return check_writable_variable(expr, id);
   sema_.error(DiagnosticCode::kNotAssignable, expr.span,
               "`" + std::string(expr.name.text) + "` is not a variable");

@@ -2,8 +2,10 @@
 // program's own name.
 #include <algorithm>
 
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -25,15 +27,15 @@ void free_inputs(ir::TypeTable& types) {
 }  // namespace
 
 // The global through which code reaches the program; invalid: there is no such program.
-VarId Sema::program_variable(std::string_view name, bool called) {
-  auto found = declared.pou_names.find(name);
-  if (found == declared.pou_names.end() ||
-      declared.pous[found->second].decl->kind != PouKind::kProgram)
+VarId Variables::program_variable(std::string_view name, bool called) {
+  auto found = sema_.declared.pou_names.find(name);
+  if (found == sema_.declared.pou_names.end() ||
+      sema_.declared.pous[found->second].decl->kind != PouKind::kProgram)
     return {};
-  PouInfo& info = declared.pous[found->second];
+  PouInfo& info = sema_.declared.pous[found->second];
   info.called = info.called || called;
   if (info.global.valid()) return info.global;
-  VarId id(static_cast<uint32_t>(declared.variables.size()));
+  VarId id(static_cast<uint32_t>(sema_.declared.variables.size()));
   Variable variable;
   variable.name = info.decl->name;
   variable.section = VarSection::kGlobal;
@@ -42,34 +44,34 @@ VarId Sema::program_variable(std::string_view name, bool called) {
   variable.hidden = true;
   variable.type = info.self;
   variable.progress = Progress::kDone;
-  declared.variables.push_back(variable);
+  sema_.declared.variables.push_back(variable);
   info.global = id;
   place_global(id);
   return id;
 }
 
 // After all bodies. What is called does not run by itself, unless a CONFIGURATION says so.
-void Sema::finish_programs() {
-  if (for_tests()) return free_inputs(program.types);  // programs are blocks then
-  for (const PouInfo& info : declared.pous) {
+void Interfaces::finish_programs() {
+  if (sema_.for_tests()) return free_inputs(sema_.program.types);  // programs are blocks then
+  for (const PouInfo& info : sema_.declared.pous) {
     if (!info.global.valid()) continue;
     ir::ProgramInstance* instance = nullptr;
-    for (ir::ProgramInstance& other : program.instances) {
+    for (ir::ProgramInstance& other : sema_.program.instances) {
       if (ir::same_name(other.name, info.decl->name.text)) instance = &other;
     }
     if (instance == nullptr) {
-      program.instances.push_back({std::string(info.decl->name.text),
-                                   info.self,
-                                   ir::kNoTask,
-                                   {},
-                                   OldNames(*this).add(std::string(info.old_name))});
+      sema_.program.instances.push_back({std::string(info.decl->name.text),
+                                         info.self,
+                                         ir::kNoTask,
+                                         {},
+                                         OldNames(sema_).add(std::string(info.old_name))});
     } else if (instance->type != info.self) {
       error(DiagnosticCode::kDuplicateName, info.decl->name.span,
             "the program instance `" + instance->name +
                 "` is of another type than the program "
                 "of that name, which other POUs use",
             "give the instance another name");
-    } else if (tree.configs.empty() && info.called) {
+    } else if (sema_.tree.configs.empty() && info.called) {
       instance->task = ir::kNoTask;
     }
   }

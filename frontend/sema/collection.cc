@@ -1,6 +1,7 @@
 // First pass: every name that a declaration brings into the world, nothing resolved.
 #include "frontend/sema/collection.h"
 #include "frontend/sema/configuration.h"
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
@@ -353,7 +354,8 @@ bool Collection::use_library(std::string_view name) {
   auto found = sema_.library.pous.find(name);
   if (found == sema_.library.pous.end() || sema_.declared.pou_names.contains(name)) return false;
   uint32_t number = add_pou(*found->second, true, found->first);
-  if (sema_.declared.complete) sema_.resolve_interface(number);  // a function first met in a body
+  if (sema_.declared.complete)
+    sema_.ask<Interfaces>().resolve_interface(number);  // a function first met in a body
   return true;
 }
 

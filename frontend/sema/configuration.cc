@@ -6,6 +6,7 @@
 #include "frontend/sema/configuration.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/instance_paths.h"
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
@@ -291,7 +292,7 @@ uint32_t Configuration::clone_program(uint32_t original, const ProgramDecl& decl
   sema_.program.pous.push_back(std::move(code));
   ask<Collection>().collect_interface(number);
   for (uint32_t i = number; i < sema_.declared.pous.size(); ++i)
-    sema_.resolve_interface(i);  // its methods too
+    sema_.ask<Interfaces>().resolve_interface(i);  // its methods too
   return number;
 }
 

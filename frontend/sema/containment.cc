@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
 
 namespace frontend {
 namespace {
@@ -131,6 +132,6 @@ class Containment {
 
 }  // namespace
 
-void Sema::check_containment() { Containment(*this).check(); }
+void Types::check_containment() { Containment(sema_).check(); }
 
 }  // namespace frontend

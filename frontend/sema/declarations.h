@@ -21,6 +21,7 @@ struct Declarations {
   const PouInfo* find_pou(std::string_view qualified) const;
   // The block or interface around a POU, which may be one itself; kNoPou: none.
   uint32_t block_of(uint32_t pou) const;
+  PouScope scope_of(uint32_t pou) const { return pou == kNoPou ? PouScope() : PouScope(pous[pou]); }
   uint32_t block_of(const PouScope& scope) const { return block_of(scope.number()); }
   const StructureField* find_field(ir::TypeId structure, std::string_view name) const;
   // The number of a member that is no BIT; -1: there is none.

@@ -4,9 +4,11 @@
 
 #include "frontend/sema/calls.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/folder.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
+#include "frontend/sema/types.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -132,13 +134,14 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
         value.integer = static_cast<int64_t>(literal.integer);
       if (literal.negative) value.integer = -value.integer;
       if (literal.kind != LiteralKind::kInteger) {
-        value.type = without_range(sema_.program.types, sema_.infer_literal(expr).type);
+        value.type =
+            without_range(sema_.program.types, sema_.ask<Expressions>().infer_literal(expr).type);
       }
       break;
   }
   if (literal.prefix == kNoNumber) return value;
   // A typed literal has to fit its prefix: INT#40000 does not.
-  ir::TypeId type = sema_.infer_literal(expr).type;
+  ir::TypeId type = sema_.ask<Expressions>().infer_literal(expr).type;
   if (!type.valid()) return std::nullopt;
   if (is_string(sema_.program.types, type)) {
     value.type = type;
@@ -183,7 +186,7 @@ std::optional<Constant> Folder::enumerator(ir::TypeId type, const Expr& name) {
   // Ambiguous name in the context of a third enumeration: any candidate will be refused.
   auto found = sema_.declared.literals.find(sema_.namespaces.find(NameSort::kLiteral, name));
   if (found == sema_.declared.literals.end()) return std::nullopt;  // NULL, for example
-  const ir::TypeId any = sema_.resolve_type(found->second[0].spec).type;
+  const ir::TypeId any = sema_.ask<Types>().resolve_type(found->second[0].spec).type;
   if (!sema_.program.types.is_scalar(any)) return std::nullopt;
   return of_bits(any, 0);
 }

@@ -1,5 +1,6 @@
 // Global variables and the lists that they stand in: `List.x`, `.x`.
 #include "frontend/sema/collection.h"
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -55,15 +56,16 @@ void Collection::collect_globals(const VarBlock& block, std::string_view list) {
 }
 
 // List.x or A.x; nullopt when neither a list nor a namespace stands before the dot.
-std::optional<Note> Sema::infer_list_member(const Expr& expr) {
-  const Expr& head = tree[expr.operand];
-  const VarId variable = namespaces.find_global(expr);
+std::optional<Note> Expressions::infer_list_member(const Expr& expr) {
+  const Expr& head = sema_.tree[expr.operand];
+  const VarId variable = sema_.namespaces.find_global(expr);
   if (variable.valid()) return variable_note(variable);
-  if (namespaces.is_namespace(head)) return infer_enum_name(expr);
-  const GlobalList* list = namespaces.list(head);
+  if (sema_.namespaces.is_namespace(head)) return infer_enum_name(expr);
+  const GlobalList* list = sema_.namespaces.list(head);
   if (list == nullptr) return std::nullopt;
-  const std::string_view other = namespaces.find(NameSort::kDeclaration, head);
-  if (declared.types.contains(other) || declared.pou_names.contains(other)) return std::nullopt;
+  const std::string_view other = sema_.namespaces.find(NameSort::kDeclaration, head);
+  if (sema_.declared.types.contains(other) || sema_.declared.pou_names.contains(other))
+    return std::nullopt;
   NearestName nearest(expr.name.text);
   nearest.offer_all(list->names);
   error(DiagnosticCode::kUnknownName, expr.name.span,

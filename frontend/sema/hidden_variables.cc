@@ -3,7 +3,9 @@
 #include <span>
 
 #include "frontend/sema/collection.h"
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 
@@ -26,7 +28,7 @@ VarId Collection::add_static(Variable variable, PouInfo& info) {
   if (info.static_list.empty()) info.static_list = sema_.declared.keep_name(static_list_name(info));
   variable.list = info.static_list;
   VarId id = add_variable(variable, info.names);
-  if (id.valid()) sema_.place_global(id);
+  if (id.valid()) sema_.ask<Variables>().place_global(id);
   return id;
 }
 
@@ -81,18 +83,19 @@ void Collection::add_instance_variable(Variable variable, PouInfo& method) {
 }
 
 // After the globals that are there.
-void Sema::place_global(VarId id) {
-  if (!declared.complete) {
-    declared.variables[id.index].index = static_cast<uint32_t>(declared.global_order.size());
-    declared.global_order.push_back(id);
+void Variables::place_global(VarId id) {
+  if (!sema_.declared.complete) {
+    sema_.declared.variables[id.index].index =
+        static_cast<uint32_t>(sema_.declared.global_order.size());
+    sema_.declared.global_order.push_back(id);
     return;
   }
   // The globals are laid out already: bare addresses may stand after them.
-  declared.variables[id.index].index =
-      static_cast<uint32_t>(program.types[program.globals].members.size());
+  sema_.declared.variables[id.index].index =
+      static_cast<uint32_t>(sema_.program.types[sema_.program.globals].members.size());
   const Variable& resolved = resolve(id);
-  ir::Member member = member_of(resolved, ir::Section::kGlobal);
-  program.types.edit(program.globals).members.push_back(std::move(member));
+  ir::Member member = ask<Interfaces>().member_of(resolved, ir::Section::kGlobal);
+  sema_.program.types.edit(sema_.program.globals).members.push_back(std::move(member));
 }
 
 // `x#last` remembers, `x#edge` is what the body sees; no source can write these names.
@@ -117,10 +120,10 @@ void Collection::add_edge(VarId input, PouInfo& info) {
   sema_.declared.variables[input.index].edge = edge;
 }
 
-void Sema::check_edge(const Variable& variable) {
+void Variables::check_edge(const Variable& variable) {
   if (variable.decl->edge == Edge::kNone || variable.hidden) return;
   bool kept = variable.storage == Storage::kMember && variable.section == VarSection::kInput;
-  if (kept && traits_of(program.types, variable.type).boolean) return;
+  if (kept && traits_of(sema_.program.types, variable.type).boolean) return;
   error(
       DiagnosticCode::kBadEdge, variable.name.span,
       "`" + std::string(variable.name.text) + "` is no BOOL input of a function block or program");

@@ -2,10 +2,13 @@
 // Each expression is visited once; the note stays.
 #include "frontend/sema/calls.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
@@ -38,26 +41,26 @@ ir::Kind integer_kind(const Literal& literal) {
 
 }  // namespace
 
-const Note& Sema::infer_now(ExprId id, Note& note) {
-  const Expr& expr = tree[id];
-  if (facts.depth > kMaxDepth) {
+const Note& Expressions::infer_now(ExprId id, Note& note) {
+  const Expr& expr = sema_.tree[id];
+  if (sema_.facts.depth > kMaxDepth) {
     error(DiagnosticCode::kTooDeep, expr.span, "the expression is nested too deeply",
           "split it with intermediate variables");
     note.progress = Progress::kDone;
     return note;
   }
-  ++facts.depth;
+  ++sema_.facts.depth;
   note = infer_kind(id, expr);
   if (expr.kind != ExprKind::kName && expr.kind != ExprKind::kMember) note.property = kNoPou;
   note.reference = {};
-  if (note.type.valid() && program.types[note.type].kind == ir::Kind::kReferenceTo) {
+  if (note.type.valid() && sema_.program.types[note.type].kind == ir::Kind::kReferenceTo) {
     note.reference = note.type;
-    note.type = program.types[note.type].base;
+    note.type = sema_.program.types[note.type].base;
     note.constant = false;
     note.can_trap = true;
   }
   if (note.constant) note.known = Known::kConstant;
-  --facts.depth;
+  --sema_.facts.depth;
   note.progress = Progress::kDone;
   return note;
 }
@@ -70,7 +73,7 @@ static void mark_bit(Note& note, const AddressView& view) {
   note.bit_number = static_cast<uint32_t>(view.bit);
 }
 
-Note Sema::infer_kind(ExprId, const Expr& expr) {
+Note Expressions::infer_kind(ExprId, const Expr& expr) {
   switch (expr.kind) {
     case ExprKind::kLiteral:
       return infer_literal(expr);
@@ -96,8 +99,8 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       return infer_result(expr);
     case ExprKind::kDirect: {
       Note note;
-      note.type = type_of_direct(tree.directs[expr.number].address);
-      if (const AddressView* view = direct_view(*this, expr)) mark_bit(note, *view);
+      note.type = ask<Variables>().type_of_direct(sema_.tree.directs[expr.number].address);
+      if (const AddressView* view = direct_view(sema_, expr)) mark_bit(note, *view);
       return note;
     }
     case ExprKind::kDeref:
@@ -110,7 +113,7 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
       return {};
     case ExprKind::kThis:
     case ExprKind::kSuper:
-      return objects.infer_this(expr);
+      return sema_.objects.infer_this(expr);
     case ExprKind::kError:
     case ExprKind::kType:  // reported by report_not_supported()
       return {};
@@ -118,21 +121,22 @@ Note Sema::infer_kind(ExprId, const Expr& expr) {
   return {};
 }
 
-Note Sema::infer_literal(const Expr& expr) {
-  const Literal& literal = tree.literals[expr.number];
+Note Expressions::infer_literal(const Expr& expr) {
+  const Literal& literal = sema_.tree.literals[expr.number];
   Note note;
   note.constant = true;
   if (literal.too_large) return {};
-  if (const Name prefix = tree.name(literal.prefix); !prefix.empty()) {
-    auto use = find_type(namespaces.find(NameSort::kDeclaration, prefix));
+  if (const Name prefix = sema_.tree.name(literal.prefix); !prefix.empty()) {
+    auto use = ask<Types>().find_type(sema_.namespaces.find(NameSort::kDeclaration, prefix));
     if (!use) {
       error(DiagnosticCode::kUnknownType, prefix.span,
             "`" + std::string(prefix.text) + "` is not a type");
       return {};
     }
     const ir::TypeId type = use->type;
-    const bool single = type.valid() && !program.types.is_reference(type) &&
-                        (program.types.is_scalar(type) || is_string(program.types, type));
+    const bool single =
+        type.valid() && !sema_.program.types.is_reference(type) &&
+        (sema_.program.types.is_scalar(type) || is_string(sema_.program.types, type));
     if (type.valid() && !single) {
       error(DiagnosticCode::kUnknownType, prefix.span,
             "`" + std::string(prefix.text) + "` has no literals");
@@ -144,69 +148,69 @@ Note Sema::infer_literal(const Expr& expr) {
   switch (literal.kind) {
     case LiteralKind::kInteger:
       note.flex = Flex::kInteger;
-      note.type = program.types.elementary(integer_kind(literal));
+      note.type = sema_.program.types.elementary(integer_kind(literal));
       return note;
     case LiteralKind::kReal:
       note.flex = Flex::kReal;
-      note.type = program.types.elementary(ir::Kind::kLreal);
+      note.type = sema_.program.types.elementary(ir::Kind::kLreal);
       return note;
     case LiteralKind::kString: {
       note.flex = Flex::kText;
-      uint32_t length = static_cast<uint32_t>(tree.texts[literal.text].size());
-      note.type = program.types.string(length == 0 ? 1 : length);
+      uint32_t length = static_cast<uint32_t>(sema_.tree.texts[literal.text].size());
+      note.type = sema_.program.types.string(length == 0 ? 1 : length);
       return note;
     }
     case LiteralKind::kWstring: {
       note.flex = Flex::kText;
-      uint32_t length = static_cast<uint32_t>(tree.texts[literal.text].size() / 2);
-      note.type = program.types.wstring(length == 0 ? 1 : length);
+      uint32_t length = static_cast<uint32_t>(sema_.tree.texts[literal.text].size() / 2);
+      note.type = sema_.program.types.wstring(length == 0 ? 1 : length);
       return note;
     }
     default:
-      note.type = program.types.elementary(literal_kind(literal));
+      note.type = sema_.program.types.elementary(literal_kind(literal));
       return note;
   }
 }
 
-Note Sema::infer_name(const Expr& expr) {
-  VarId id = find_variable(expr);
+Note Expressions::infer_name(const Expr& expr) {
+  VarId id = ask<Variables>().find_variable(expr);
   if (!id.valid() && expr.global) {
     NearestName nearest(expr.name.text);
-    nearest.offer_all(declared.globals);
+    nearest.offer_all(sema_.declared.globals);
     error(DiagnosticCode::kUnknownName, expr.span,
           "there is no global variable `" + std::string(expr.name.text) + "`", nearest.fix());
     return {};
   }
   if (!id.valid() && ir::same_name(expr.name.text, "NULL")) {
     Note note;
-    note.type = program.types.ref_to(program.types.elementary(ir::Kind::kByte));
+    note.type = sema_.program.types.ref_to(sema_.program.types.elementary(ir::Kind::kByte));
     note.flex = Flex::kNull;
     note.constant = true;
     return note;
   }
   if (!id.valid()) return infer_enum_name(expr);
-  const Variable& variable = declared.variables[id.index];
+  const Variable& variable = sema_.declared.variables[id.index];
   if (variable.access == Access::kPrivate) {  // of a base
-    objects.check_access(variable.access, variable.pou, expr.name);
+    sema_.objects.check_access(variable.access, variable.pou, expr.name);
   }
   return variable_note(id);
 }
 
-Note Sema::variable_note(VarId id) {
-  mark_used(id);
+Note Expressions::variable_note(VarId id) {
+  sema_.mark_used(id);
   const Variable* variable = &resolve(id);
   if (variable->external.valid()) {
     id = variable->external;
-    mark_used(id);
+    sema_.mark_used(id);
     variable = &resolve(id);
   }
   Note note;
   note.variable = id;
   note.type = variable->type;
   const bool known = has_known_value(*variable);
-  note.constant =
-      known && variable->type.valid() &&
-      (program.types.is_scalar(variable->type) || is_string(program.types, variable->type));
+  note.constant = known && variable->type.valid() &&
+                  (sema_.program.types.is_scalar(variable->type) ||
+                   is_string(sema_.program.types, variable->type));
   bool has_initial = variable->section != VarSection::kInOut;
   note.known = known ? Known::kConstant : has_initial ? Known::kInitially : Known::kNo;
   mark_bit(note, variable->view);
@@ -214,77 +218,80 @@ Note Sema::variable_note(VarId id) {
 }
 
 // `name`, or `A.name` where A is a namespace.
-Note Sema::infer_enum_name(const Expr& expr) {
+Note Expressions::infer_enum_name(const Expr& expr) {
   const bool plain = expr.kind == ExprKind::kName;
-  const uint32_t own = plain ? declared.block_of(scope_) : kNoPou;
+  const uint32_t own = plain ? sema_.declared.block_of(scope_) : kNoPou;
   Objects::Found code;
-  if (own != kNoPou) code = objects.find_code(own, expr.name.text);
-  if (code.code.is_property()) return objects.infer_property(expr.name, code);
+  if (own != kNoPou) code = sema_.objects.find_code(own, expr.name.text);
+  if (code.code.is_property()) return sema_.objects.infer_property(expr.name, code);
   if (code.owner != kNoPou) {
     error(DiagnosticCode::kNotAValue, expr.span,
           "`" + std::string(expr.name.text) + "` is a method",
           "call it: `" + std::string(expr.name.text) + "()`");
     return {};
   }
-  std::string_view name = namespaces.find(NameSort::kLiteral, expr);
-  auto found = declared.literals.find(name);
-  if (found == declared.literals.end() && plain && ask<Collection>().use_library_literal(name))
-    found = declared.literals.find(name);
-  if (found == declared.literals.end()) {
-    VarId id = plain ? program_variable(name, false) : VarId();
+  std::string_view name = sema_.namespaces.find(NameSort::kLiteral, expr);
+  auto found = sema_.declared.literals.find(name);
+  if (found == sema_.declared.literals.end() && plain &&
+      ask<Collection>().use_library_literal(name))
+    found = sema_.declared.literals.find(name);
+  if (found == sema_.declared.literals.end()) {
+    VarId id = plain ? ask<Variables>().program_variable(name, false) : VarId();
     if (id.valid()) return variable_note(id);
-    name = namespaces.find(NameSort::kDeclaration, expr);
-    if (namespaces.is_path(expr)) {
+    name = sema_.namespaces.find(NameSort::kDeclaration, expr);
+    if (sema_.namespaces.is_path(expr)) {
       error(DiagnosticCode::kNotAValue, expr.span, "`" + std::string(name) + "` is a namespace");
       return {};
     }
-    bool pou = declared.pou_names.contains(name) || declared.types.contains(name) ||
-               library.pous.contains(name) || library.functions.contains(name);
+    bool pou = sema_.declared.pou_names.contains(name) || sema_.declared.types.contains(name) ||
+               sema_.library.pous.contains(name) || sema_.library.functions.contains(name);
     error(pou ? DiagnosticCode::kNotAValue : DiagnosticCode::kUnknownName, expr.span,
           "`" + std::string(name) + (pou ? "` is not a variable" : "` is not declared"),
-          pou ? Fix() : name_suggestion(name, false));
+          pou ? Fix() : ask<Variables>().name_suggestion(name, false));
     return {};
   }
   Note note;
   note.constant = true;
-  const bool several = found->second.size() > 1 || namespaces.is_ambiguous(expr.name);
+  const bool several = found->second.size() > 1 || sema_.namespaces.is_ambiguous(expr.name);
   if (several) note.flex = Flex::kEnum;
-  note.type = resolve_type(found->second[0].spec).type;
+  note.type = ask<Types>().resolve_type(found->second[0].spec).type;
   return note;
 }
 
 // Color#Red, A.Color#Red
-Note Sema::infer_qualified(const Expr& expr) {
-  const Name type = tree.name(expr.number);
+Note Expressions::infer_qualified(const Expr& expr) {
+  const Name type = sema_.tree.name(expr.number);
   if (!expr.operand.valid()) {
-    return infer_literal_of(namespaces.find(NameSort::kDeclaration, type), type.span, expr.name);
+    return infer_literal_of(sema_.namespaces.find(NameSort::kDeclaration, type), type.span,
+                            expr.name);
   }
   Expr whole;  // A.Color
   whole.kind = ExprKind::kMember;
   whole.operand = expr.operand;
   whole.name = type;
-  whole.span = {tree[expr.operand].span.begin, type.span.end};
-  const std::string_view name = namespaces.find(NameSort::kDeclaration, whole);
+  whole.span = {sema_.tree[expr.operand].span.begin, type.span.end};
+  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, whole);
   if (!name.empty()) return infer_literal_of(name, whole.span, expr.name);
-  error(DiagnosticCode::kUnknownName, tree[expr.operand].span,
+  error(DiagnosticCode::kUnknownName, sema_.tree[expr.operand].span,
         "what stands before `" + std::string(type.text) + "#` is not a namespace");
   return {};
 }
 
 // `span`: of the type's name.
-Note Sema::infer_literal_of(std::string_view name, base::SourceSpan span, const Name& wanted) {
-  auto use = find_type(name);
+Note Expressions::infer_literal_of(std::string_view name, base::SourceSpan span,
+                                   const Name& wanted) {
+  auto use = ask<Types>().find_type(name);
   bool known = use && use->type.valid();
   if (use && !known) return {};
-  if (!known || !is_enum(program.types, use->type)) {
+  if (!known || !is_enum(sema_.program.types, use->type)) {
     NearestName type(name);
-    type.offer_all(declared.types);
+    type.offer_all(sema_.declared.types);
     error(known ? DiagnosticCode::kNotEnumeration : DiagnosticCode::kUnknownType, span,
           "`" + std::string(name) + "` is not an enumeration", known ? "" : type.fix());
     return {};
   }
   NearestName nearest(wanted.text);
-  for (const ir::EnumLiteral& literal : program.types[use->type].literals) {
+  for (const ir::EnumLiteral& literal : sema_.program.types[use->type].literals) {
     nearest.offer(literal.name);
     if (!ir::same_name(literal.name, wanted.text)) continue;
     Note note;
@@ -293,18 +300,19 @@ Note Sema::infer_literal_of(std::string_view name, base::SourceSpan span, const 
     return note;
   }
   error(DiagnosticCode::kNotEnumeration, wanted.span,
-        "`" + report.type_text(use->type) + "` has no literal `" + std::string(wanted.text) + "`",
+        "`" + sema_.report.type_text(use->type) + "` has no literal `" + std::string(wanted.text) +
+            "`",
         nearest.fix());
   return {};
 }
 
-Note Sema::infer_bit(const Expr& expr) {
+Note Expressions::infer_bit(const Expr& expr) {
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
-  Traits traits = traits_of(program.types, operand.type);
+  Traits traits = traits_of(sema_.program.types, operand.type);
   if (!traits.bits && !traits.integer) {
     error(DiagnosticCode::kBadOperand, expr.span,
-          "`" + report.type_text(operand.type) + "` has no bits to access");
+          "`" + sema_.report.type_text(operand.type) + "` has no bits to access");
     return {};
   }
   if (!check_part(operand.type, expr.number, expr.bit_size, expr.span)) return {};
@@ -312,25 +320,26 @@ Note Sema::infer_bit(const Expr& expr) {
 }
 
 // What the variable holds then; of S= and R= the value on the right.
-Note Sema::infer_assign(const Expr& expr) {
+Note Expressions::infer_assign(const Expr& expr) {
   allow_extension("an assignment inside an expression", expr.span, "write two statements");
   bool set = expr.assign == AssignOp::kSet || expr.assign == AssignOp::kReset;
   Note note;
   note.calls = true;
-  note.type = set ? program.types.elementary(ir::Kind::kBool) : infer(expr.operand).type;
+  note.type = set ? sema_.program.types.elementary(ir::Kind::kBool) : infer(expr.operand).type;
   return note;
 }
 
-bool Sema::check_part(ir::TypeId whole, uint32_t number, uint8_t size, base::SourceSpan span) {
-  uint32_t width = ir::scalar_size(program.types.scalar(whole)) * 8;
+bool Expressions::check_part(ir::TypeId whole, uint32_t number, uint8_t size,
+                             base::SourceSpan span) {
+  uint32_t width = ir::scalar_size(sema_.program.types.scalar(whole)) * 8;
   if ((uint64_t{number} + 1) * size <= width) return true;
   error(DiagnosticCode::kBitOutOfRange, span,
-        "number " + std::to_string(number) + " in `" + report.type_text(whole) + "`",
+        "number " + std::to_string(number) + " in `" + sema_.report.type_text(whole) + "`",
         "the highest is " + std::to_string(width / size - 1));
   return false;
 }
 
-Note Sema::part_note(const Note& whole, uint32_t number, uint8_t size) const {
+Note Expressions::part_note(const Note& whole, uint32_t number, uint8_t size) const {
   Note note = whole;
   note.progress = Progress::kNew;
   note.flex = Flex::kNone;
@@ -344,30 +353,32 @@ Note Sema::part_note(const Note& whole, uint32_t number, uint8_t size) const {
   note.bit_number = number;
   ir::DirectAddress bits;
   bits.bit_size = size;
-  note.type = type_of_direct(bits);
+  note.type = ask<Variables>().type_of_direct(bits);
   return note;
 }
 
-Note Sema::infer_unary(const Expr& expr) {
+Note Expressions::infer_unary(const Expr& expr) {
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
   Note note = operand;
   note.variable = {};
   note.bit_size = 0;
-  Traits traits = traits_of(program.types, operand.type);
-  note.type = without_range(program.types, operand.type);
+  Traits traits = traits_of(sema_.program.types, operand.type);
+  note.type = without_range(sema_.program.types, operand.type);
   bool good = false;
   if (expr.unary == UnaryOp::kNot) {
-    good = traits.boolean || traits.bits ||
-           (traits.integer && (options.dialect != Dialect::kIec || operand.flex != Flex::kNone));
+    good =
+        traits.boolean || traits.bits ||
+        (traits.integer && (sema_.options.dialect != Dialect::kIec || operand.flex != Flex::kNone));
   } else {
-    good = traits.number() || traits.duration || (traits.bits && options.dialect != Dialect::kIec);
+    good = traits.number() || traits.duration ||
+           (traits.bits && sema_.options.dialect != Dialect::kIec);
   }
-  if (good && expr.unary == UnaryOp::kNegate) note.width = width_of(*this, note, true);
+  if (good && expr.unary == UnaryOp::kNegate) note.width = width_of(sema_, note, true);
   if (good) return note;
   error(DiagnosticCode::kBadOperand, expr.span,
         std::string(expr.unary == UnaryOp::kNot ? "NOT" : "a sign") + " is not defined for `" +
-            report.type_text(operand.type) + "`");
+            sema_.report.type_text(operand.type) + "`");
   return {};
 }
 

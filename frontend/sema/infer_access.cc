@@ -2,22 +2,25 @@
 #include <algorithm>
 
 #include "frontend/sema/constants.h"
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 
 namespace {}  // namespace
 
-Note Sema::infer_member(const Expr& expr) {
-  const Expr& head = tree[expr.operand];
+Note Expressions::infer_member(const Expr& expr) {
+  const Expr& head = sema_.tree[expr.operand];
   if (std::string_view type = enumeration_named(head); !type.empty()) {  // E.a, A.E.a
     return infer_literal_of(type, head.span, expr.name);
   }
   if (auto global = infer_list_member(expr)) return *global;
-  if (objects.is_own(head)) {
-    const uint32_t owner = objects.receiver(expr.operand);
-    return owner == kNoPou ? Note() : objects.infer_member(expr, owner, {});
+  if (sema_.objects.is_own(head)) {
+    const uint32_t owner = sema_.objects.receiver(expr.operand);
+    return owner == kNoPou ? Note() : sema_.objects.infer_member(expr, owner, {});
   }
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
@@ -29,9 +32,9 @@ Note Sema::infer_member(const Expr& expr) {
   note.bit_size = 0;
   note.bit_member = -1;
   note.flex = Flex::kNone;
-  const ir::Type& type = program.types[operand.type];
+  const ir::Type& type = sema_.program.types[operand.type];
   if (ir::is_structure(type.kind)) {
-    if (const StructureField* field = declared.find_field(operand.type, expr.name.text)) {
+    if (const StructureField* field = sema_.declared.find_field(operand.type, expr.name.text)) {
       if (field->bit >= 0) {
         note = part_note(note, static_cast<uint32_t>(field->bit), 1);
         note.bit_member = static_cast<int32_t>(field->member);
@@ -44,58 +47,59 @@ Note Sema::infer_member(const Expr& expr) {
     NearestName nearest(expr.name.text);
     for (const ir::Member& other : type.members) nearest.offer(other.name);
     error(DiagnosticCode::kUnknownMember, expr.name.span,
-          "`" + report.type_text(operand.type) + "` has no member " + quoted(expr.name),
+          "`" + sema_.report.type_text(operand.type) + "` has no member " + quoted(expr.name),
           nearest.fix());
     return {};
   }
-  const uint32_t owner = objects.receiver(expr.operand);
-  if (owner != kNoPou) return objects.infer_member(expr, owner, note);
-  const bool block = program.types.is_reference(operand.type) &&
-                     declared.pou_of(program.types[operand.type].base) != nullptr;
+  const uint32_t owner = sema_.objects.receiver(expr.operand);
+  if (owner != kNoPou) return sema_.objects.infer_member(expr, owner, note);
+  const bool block = sema_.program.types.is_reference(operand.type) &&
+                     sema_.declared.pou_of(sema_.program.types[operand.type].base) != nullptr;
   error(DiagnosticCode::kNoMembers, expr.span,
-        "`" + report.type_text(operand.type) + "` has no members",
-        block                      ? "write `^.` to reach what it refers to"
-        : namespaces.is_path(head) ? "the variable hides the namespace of that name"
-                                   : "");
+        "`" + sema_.report.type_text(operand.type) + "` has no members",
+        block                            ? "write `^.` to reach what it refers to"
+        : sema_.namespaces.is_path(head) ? "the variable hides the namespace of that name"
+                                         : "");
   return {};
 }
 
 // The type that stands before `.a`; "": none does. `colour : Colour` is common: the type is meant
 // where the variable has no members.
-std::string_view Sema::enumeration_named(const Expr& head) {
+std::string_view Expressions::enumeration_named(const Expr& head) {
   auto enumeration = [this](ir::TypeId type) {
-    return type.valid() && is_enum(program.types, type);
+    return type.valid() && is_enum(sema_.program.types, type);
   };
-  const VarId variable = head.kind == ExprKind::kName ? find_variable(head.name) : VarId();
+  const VarId variable =
+      head.kind == ExprKind::kName ? ask<Variables>().find_variable(head.name) : VarId();
   if (variable.valid() && !enumeration(resolve(variable).type)) return {};
-  const std::string_view name = namespaces.find(NameSort::kDeclaration, head);
-  if (name.empty() || !declared.types.contains(name)) return {};
+  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, head);
+  if (name.empty() || !sema_.declared.types.contains(name)) return {};
   if (!variable.valid()) return name;
-  auto use = find_type(name);
+  auto use = ask<Types>().find_type(name);
   return use && enumeration(use->type) ? name : std::string_view();
 }
 
 // `x.NUMBER`: the bit that a constant names.
-std::optional<Note> Sema::infer_named_bit(const Expr& expr, const Note& operand) {
-  Traits traits = traits_of(program.types, operand.type);
+std::optional<Note> Expressions::infer_named_bit(const Expr& expr, const Note& operand) {
+  Traits traits = traits_of(sema_.program.types, operand.type);
   if (!traits.bits && !traits.integer) return std::nullopt;
-  VarId id = find_variable(expr.name);
+  VarId id = ask<Variables>().find_variable(expr.name);
   if (!id.valid()) return std::nullopt;
   const Variable& constant = resolve(id);
-  mark_used(id);
+  sema_.mark_used(id);
   allow_extension("a constant as the number of a bit", expr.span);
-  if (!has_known_value(constant) || !traits_of(program.types, constant.type).integer)
+  if (!has_known_value(constant) || !traits_of(sema_.program.types, constant.type).integer)
     return std::nullopt;
   ir::ConstId init = constant.init;
-  uint64_t number = init.valid() ? program.constants[init].bits : 0;
+  uint64_t number = init.valid() ? sema_.program.constants[init].bits : 0;
   uint32_t bit = static_cast<uint32_t>(std::min<uint64_t>(number, 0xffff'ffffu));
   if (!check_part(operand.type, bit, 1, expr.span)) return Note();
   return part_note(operand, bit, 1);
 }
 
-Note Sema::infer_index(const Expr& expr) {
+Note Expressions::infer_index(const Expr& expr) {
   if (const Note& operand = infer(expr.operand);
-      operand.type.valid() && program.types[operand.type].kind == ir::Kind::kPointer) {
+      operand.type.valid() && sema_.program.types[operand.type].kind == ir::Kind::kPointer) {
     return infer_pointer_index(expr, operand);
   }
   Note note = infer(expr.operand);
@@ -104,22 +108,23 @@ Note Sema::infer_index(const Expr& expr) {
   note.bit_size = 0;
   note.flex = Flex::kNone;
   for (uint32_t i = 0; i < expr.list.count; ++i) {
-    const Note& index = infer(tree.expr_lists[expr.list.first + i]);
+    const Note& index = infer(sema_.tree.expr_lists[expr.list.first + i]);
     note.known = std::min(note.known, index.known);
     note.calls = note.calls || index.calls;
     note.can_trap = note.can_trap || index.can_trap || !index.constant;
   }
   if (!note.type.valid()) return {};
-  if (is_string(program.types, note.type)) return infer_character(expr, note);
-  const ir::Type& array = program.types[note.type];
+  if (is_string(sema_.program.types, note.type)) return infer_character(expr, note);
+  const ir::Type& array = sema_.program.types[note.type];
   if (array.kind != ir::Kind::kArray) {
     error(DiagnosticCode::kNotArray, expr.span,
-          "`" + report.type_text(note.type) + "` is not an array");
+          "`" + sema_.report.type_text(note.type) + "` is not an array");
     return {};
   }
   if (array.dims.size() != expr.list.count) {
     error(DiagnosticCode::kWrongIndexCount, expr.span,
-          std::to_string(expr.list.count) + " indices for `" + report.type_text(note.type) + "`",
+          std::to_string(expr.list.count) + " indices for `" + sema_.report.type_text(note.type) +
+              "`",
           "give " + std::to_string(array.dims.size()));
     return {};
   }
@@ -131,43 +136,44 @@ Note Sema::infer_index(const Expr& expr) {
 
 // Characters count from 0 and are BYTE or WORD, as in CODESYS; with `iec`, from 1 and CHAR
 // or WCHAR (edition 3, 6.4.2.1). Position n of STRING[n] holds the NUL: `s[n] := 0` is common.
-Note Sema::infer_character(const Expr& expr, Note note) {
+Note Expressions::infer_character(const Expr& expr, Note note) {
   if (expr.list.count != 1) {
     error(DiagnosticCode::kWrongIndexCount, expr.span,
-          std::to_string(expr.list.count) + " indices for `" + report.type_text(note.type) + "`",
+          std::to_string(expr.list.count) + " indices for `" + sema_.report.type_text(note.type) +
+              "`",
           "give 1");
     return {};
   }
   ir::Type characters;
-  bool iec = options.dialect == Dialect::kIec;
-  characters.dims.push_back({iec ? 1 : 0, program.types[note.type].capacity});
+  bool iec = sema_.options.dialect == Dialect::kIec;
+  characters.dims.push_back({iec ? 1 : 0, sema_.program.types[note.type].capacity});
   check_index_list(expr, characters);
-  bool wide = program.types[note.type].kind == ir::Kind::kWstring;
+  bool wide = sema_.program.types[note.type].kind == ir::Kind::kWstring;
   ir::Kind kind = iec    ? wide ? ir::Kind::kWchar : ir::Kind::kChar
                   : wide ? ir::Kind::kWord
                          : ir::Kind::kByte;
-  note.type = program.types.elementary(kind);
+  note.type = sema_.program.types.elementary(kind);
   note.known = Known::kNo;
   return note;
 }
 
-void Sema::check_index_list(const Expr& expr, const ir::Type& array) {
+void Expressions::check_index_list(const Expr& expr, const ir::Type& array) {
   std::vector<ir::Dimension> dims = array.dims;
   for (uint32_t i = 0; i < expr.list.count; ++i) {
-    ExprId index = tree.expr_lists[expr.list.first + i];
+    ExprId index = sema_.tree.expr_lists[expr.list.first + i];
     const Note& note = infer(index);
     if (!note.type.valid()) continue;
-    Traits traits = traits_of(program.types, note.type);
-    bool enumeration = is_enum(program.types, note.type);
+    Traits traits = traits_of(sema_.program.types, note.type);
+    bool enumeration = is_enum(sema_.program.types, note.type);
     if (!traits.integer && !traits.bits && !enumeration) {
-      error(DiagnosticCode::kIndexNotInteger, tree[index].span,
-            "the index is `" + report.type_text(note.type) + "`");
+      error(DiagnosticCode::kIndexNotInteger, sema_.tree[index].span,
+            "the index is `" + sema_.report.type_text(note.type) + "`");
       continue;
     }
     if (!note.constant) continue;
     auto value = ask<Constants>().fold_integer(index);
     if (!value || (*value >= dims[i].low && *value <= dims[i].high)) continue;
-    error(DiagnosticCode::kIndexOutOfBounds, tree[index].span,
+    error(DiagnosticCode::kIndexOutOfBounds, sema_.tree[index].span,
           "index " + std::to_string(*value) + " is outside " + std::to_string(dims[i].low) + ".." +
               std::to_string(dims[i].high));
   }

@@ -9,6 +9,7 @@
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/standard_calls.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -24,12 +25,12 @@ std::string_view last_name(const Name& path) {
 Callee Calls::callee(const Expr& call) {
   const Expr& head = sema_.tree[call.operand];
   if (head.kind == ExprKind::kName) {
-    VarId id = sema_.find_variable(head);
+    VarId id = sema_.ask<Variables>().find_variable(head);
     if (!id.valid() && !head.global) {
       if (auto method = sema_.objects.method_of(sema_.declared.block_of(scope_), head.name))
         return *method;
     }
-    if (!id.valid()) id = sema_.program_variable(head.name.text, true);
+    if (!id.valid()) id = sema_.ask<Variables>().program_variable(head.name.text, true);
     if (!id.valid()) {
       return named_callee(call, head);
     }
@@ -136,7 +137,7 @@ Callee Calls::named_callee(const Expr& call, const Expr& head) {
     return callee;
   }
   error(DiagnosticCode::kUnknownName, head.span, "`" + std::string(name) + "` is not declared",
-        sema_.name_suggestion(name, true, head.instruction));
+        sema_.ask<Variables>().name_suggestion(name, true, head.instruction));
   return callee;
 }
 

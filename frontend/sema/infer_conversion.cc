@@ -4,6 +4,7 @@
 #include "frontend/sema/calls.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/standard_calls.h"
+#include "frontend/sema/types.h"
 
 namespace frontend {
 namespace {
@@ -29,7 +30,7 @@ std::optional<Conversion> StandardCalls::conversion_to_enumeration(std::string_v
       if (!source) continue;
       out.from = *source;
     }
-    const auto found = sema_.find_type(name.substr(at + kTo.size()));
+    const auto found = sema_.ask<Types>().find_type(name.substr(at + kTo.size()));
     if (!found || !is_enum(sema_.program.types, found->type)) continue;
     out.enumeration = found->type;
     out.to = sema_.program.types.root_kind(found->type);

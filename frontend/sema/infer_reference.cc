@@ -1,8 +1,11 @@
 // Pointers and references (docs/adr/0005): their types, what they lead to, their arithmetic.
 #include "frontend/sema/calls.h"
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -43,59 +46,59 @@ ReferenceCall reference_call_of_name(std::string_view name) {
 
 // The target may be a type whose content is being found out just now, or later: structures may
 // lead back to themselves.
-TypeUse Sema::resolve_reference(const Spec& spec) {
-  const Spec& element = tree[spec.element];
+TypeUse Types::resolve_reference(const Spec& spec) {
+  const Spec& element = sema_.tree[spec.element];
   ir::TypeId target;
   if (element.kind == SpecKind::kNamed) {
     const std::string_view name =
-        namespaces.find(NameSort::kDeclaration, element.qualifiers, element.name);
-    if (auto known = declared.types.find(name); known != declared.types.end()) {
-      target = facts.specs[known->second.index].forward;
+        sema_.namespaces.find(NameSort::kDeclaration, element.qualifiers, element.name);
+    if (auto known = sema_.declared.types.find(name); known != sema_.declared.types.end()) {
+      target = sema_.facts.specs[known->second.index].forward;
     }
   }
   if (!target.valid()) target = resolve_type(spec.element).type;
   if (!target.valid()) return {};
-  if (program.types[target].kind == ir::Kind::kReferenceTo) {
+  if (sema_.program.types[target].kind == ir::Kind::kReferenceTo) {
     error(DiagnosticCode::kBadReference, spec.span,
-          "a reference to a `" + report.type_text(target) + "`",
+          "a reference to a `" + sema_.report.type_text(target) + "`",
           "REFERENCE TO stands for its target; refer to that");
     return {};
   }
-  return {program.types.reference(reference_kind(spec.kind), target), {}};
+  return {sema_.program.types.reference(reference_kind(spec.kind), target), {}};
 }
 
-Note Sema::infer_deref(const Expr& expr) {
+Note Expressions::infer_deref(const Expr& expr) {
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
-  if (!program.types.is_reference(operand.type) || operand.flex == Flex::kNull) {
+  if (!sema_.program.types.is_reference(operand.type) || operand.flex == Flex::kNull) {
     error(DiagnosticCode::kNotReference, expr.span,
-          "`" + report.type_text(operand.type) + "` is not a reference");
+          "`" + sema_.report.type_text(operand.type) + "` is not a reference");
     return {};
   }
   Note note;
-  note.type = program.types[without_range(program.types, operand.type)].base;
+  note.type = sema_.program.types[without_range(sema_.program.types, operand.type)].base;
   note.calls = operand.calls;
   note.can_trap = true;
   return note;
 }
 
 // p[i] is the i-th value after the pointer; nothing but the area bounds i.
-Note Sema::infer_pointer_index(const Expr& expr, const Note& operand) {
+Note Expressions::infer_pointer_index(const Expr& expr, const Note& operand) {
   Note note;
   if (expr.list.count != 1) {
     error(DiagnosticCode::kWrongIndexCount, expr.span, "a pointer takes one index");
     return {};
   }
-  const ExprId at = tree.expr_lists[expr.list.first];
+  const ExprId at = sema_.tree.expr_lists[expr.list.first];
   const Note& index = infer(at);
   if (!index.type.valid()) return {};
-  const Traits traits = traits_of(program.types, index.type);
+  const Traits traits = traits_of(sema_.program.types, index.type);
   if (!traits.integer && !traits.bits) {
-    error(DiagnosticCode::kIndexNotInteger, tree[at].span,
-          "the index is `" + report.type_text(index.type) + "`");
+    error(DiagnosticCode::kIndexNotInteger, sema_.tree[at].span,
+          "the index is `" + sema_.report.type_text(index.type) + "`");
     return {};
   }
-  note.type = program.types[operand.type].base;
+  note.type = sema_.program.types[operand.type].base;
   note.calls = operand.calls || index.calls;
   note.can_trap = true;
   return note;
@@ -161,10 +164,11 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
 // SIZEOF takes a variable or a type.
 ir::TypeId Calls::type_of_argument(ExprId argument) {
   const Expr& expr = sema_.tree[argument];
-  if (expr.kind == ExprKind::kType) return sema_.resolve_type(expr.spec()).type;
-  if (expr.kind == ExprKind::kName ? !sema_.find_variable(expr.name).valid()
+  if (expr.kind == ExprKind::kType) return sema_.ask<Types>().resolve_type(expr.spec()).type;
+  if (expr.kind == ExprKind::kName ? !sema_.ask<Variables>().find_variable(expr.name).valid()
                                    : sema_.namespaces.declares(expr)) {
-    if (auto use = sema_.find_type(sema_.namespaces.find(NameSort::kDeclaration, expr)))
+    if (auto use =
+            sema_.ask<Types>().find_type(sema_.namespaces.find(NameSort::kDeclaration, expr)))
       return use->type;
   }
   return infer(argument).type;

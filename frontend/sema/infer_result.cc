@@ -1,5 +1,6 @@
 // What an instruction list keeps of its current result, or a diagram of a value: a variable
 // without a name, whose type comes from the values that reach it from above.
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
 
@@ -12,17 +13,17 @@ bool same_kind_of_string(const ir::TypeTable& types, ir::TypeId a, ir::TypeId b)
 
 }  // namespace
 
-Note Sema::infer_result(const Expr& expr) {
+Note Expressions::infer_result(const Expr& expr) {
   Note note;
   if (expr.operand.valid()) {
     note.type = infer(expr.operand).type;
     return note;
   }
-  const ir::TypeTable& types = program.types;
-  Range32 values = tree.results[expr.number].values;
+  const ir::TypeTable& types = sema_.program.types;
+  Range32 values = sema_.tree.results[expr.number].values;
   Note best;
   for (uint32_t i = 0; i < values.count; ++i) {
-    ExprId id = tree.expr_lists[values.first + i];
+    ExprId id = sema_.tree.expr_lists[values.first + i];
     const Note& next = infer(id);
     if (!next.type.valid()) return {};
     if (!best.type.valid()) {
@@ -38,12 +39,12 @@ Note Sema::infer_result(const Expr& expr) {
   if (!best.type.valid()) return {};
   if (types.is_instance(best.type)) {
     error(DiagnosticCode::kNotAValue, expr.span,
-          "an instance of `" + report.type_text(best.type) + "` is no value",
+          "an instance of `" + sema_.report.type_text(best.type) + "` is no value",
           "load one of its variables");
     return {};
   }
   note.type = without_range(types, best.type);
-  if (ExprId target = tree.results[expr.number].target;
+  if (ExprId target = sema_.tree.results[expr.number].target;
       target.valid() && best.flex != Flex::kNone) {
     ir::TypeId wanted = infer(target).type;
     if (wanted.valid() && !types.is_instance(wanted)) note.type = without_range(types, wanted);
@@ -51,8 +52,8 @@ Note Sema::infer_result(const Expr& expr) {
   return note;
 }
 
-bool Sema::check_result(const Stmt& stmt) {
-  const ir::TypeTable& types = program.types;
+bool Expressions::check_result(const Stmt& stmt) {
+  const ir::TypeTable& types = sema_.program.types;
   const Note& value = infer(stmt.value);
   ir::TypeId wanted = infer(stmt.target).type;
   if (!value.type.valid() || !wanted.valid() || value.flex != Flex::kNone) {
@@ -65,8 +66,8 @@ bool Sema::check_result(const Stmt& stmt) {
     return true;
   }
   error(DiagnosticCode::kResultsDiffer, stmt.span,
-        "the current result is `" + report.type_text(given) + "` here and `" +
-            report.type_text(wanted) + "` on another way to the same label",
+        "the current result is `" + sema_.report.type_text(given) + "` here and `" +
+            sema_.report.type_text(wanted) + "` on another way to the same label",
         "convert one of them, or load the operand after the label");
   return false;
 }

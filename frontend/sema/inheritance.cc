@@ -6,6 +6,7 @@
 #include "frontend/sema/query_interface.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
 
 namespace frontend {
 namespace {
@@ -27,7 +28,7 @@ void Objects::inherit() {
 uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interface) {
   if (is_query_interface(sema_.tree, sema_.tree[spec])) return kNoPou;
   Sema::Within scope(sema_, info.number);
-  ir::TypeId type = sema_.resolve_type(spec).type;
+  ir::TypeId type = sema_.ask<Types>().resolve_type(spec).type;
   if (!type.valid()) return kNoPou;
   if (is_interface(sema_.program.types, type)) type = sema_.program.types[type].base;
   const auto found = sema_.declared.pou_by_type.find(type);

@@ -3,6 +3,7 @@
 
 #include "frontend/sema/constants.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 
@@ -119,7 +120,7 @@ bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>
       values.push_back(tree.expr_lists[item.list.first + k]);
     }
   } else if (item.kind == ExprKind::kCall && tree[item.operand].kind == ExprKind::kName &&
-             sema_.find_variable(tree[item.operand]).valid()) {
+             sema_.ask<Variables>().find_variable(tree[item.operand]).valid()) {
     for (uint32_t k = 0; k < item.list.count; ++k) {
       values.push_back(tree.args[item.list.first + k].value);
       if (!values.back().valid()) return false;

@@ -1,5 +1,7 @@
 #include "frontend/sema/instance_paths.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
@@ -83,7 +85,7 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
     path.type = sema_.program.instances[i].type;
     return true;
   }
-  if (VarId id = sema_.find_variable(expr); id.valid()) return global(id, path);
+  if (VarId id = sema_.ask<Variables>().find_variable(expr); id.valid()) return global(id, path);
   bool prefix = sema_.declared.resource != nullptr &&
                 ir::same_name(sema_.declared.resource->name.text, expr.name.text);
   bool config =
@@ -178,10 +180,10 @@ bool InstancePaths::walk(ExprId id, Path& path) {
         view(*shared, path);
         return true;
       }
-      path.root = sema_.direct_member(expr);
+      path.root = sema_.ask<Variables>().direct_member(expr);
       path.text = sema_.program.types[sema_.program.globals].members[path.root].name;
       path.global = true;
-      path.type = sema_.type_of_direct(sema_.tree.directs[expr.number].address);
+      path.type = sema_.ask<Variables>().type_of_direct(sema_.tree.directs[expr.number].address);
       return true;
     default:
       sema_.error(DiagnosticCode::kUnknownName, expr.span,
@@ -191,7 +193,7 @@ bool InstancePaths::walk(ExprId id, Path& path) {
 }
 
 bool InstancePaths::check_type(const VarDecl& decl, const Path& path) {
-  TypeUse use = sema_.resolve_type(decl.spec);
+  TypeUse use = sema_.ask<Types>().resolve_type(decl.spec);
   if (!use.type.valid()) return false;
   if (path.text.empty() || use.type != path.type) {
     sema_.error(DiagnosticCode::kTypeMismatch, sema_.tree[decl.path].span,
@@ -210,8 +212,9 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
   if (decl.has_address && !decl.incomplete) {
     bool open =
         path.address.bit_offset == ir::kOpenAddress && path.address.area == decl.address.area;
-    std::string problem = open ? sema_.address_problem(path.type, decl.address, false)
-                               : "is not declared with AT %I*, %Q* or %M* of this area";
+    std::string problem =
+        open ? sema_.ask<Variables>().address_problem(path.type, decl.address, false)
+             : "is not declared with AT %I*, %Q* or %M* of this area";
     if (!problem.empty()) {
       sema_.error(DiagnosticCode::kBadAddress, decl.span, "`" + path.text + "` " + problem);
       return;

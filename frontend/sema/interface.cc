@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <set>
 
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/open_functions.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/test_build.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {
@@ -46,36 +49,36 @@ VarSection ir_section(const Variable& variable) {
 
 }  // namespace
 
-void Sema::resolve_declarations() {
-  for (const TypeDecl& decl : tree.types) {
-    if (!library.holds(decl.name.span)) resolve_type(decl.spec);
+void Interfaces::resolve_declarations() {
+  for (const TypeDecl& decl : sema_.tree.types) {
+    if (!sema_.library.holds(decl.name.span)) ask<Types>().resolve_type(decl.spec);
   }
-  OldNames(*this).rename_types();
-  SharedAddresses(*this).find();
+  OldNames(sema_).rename_types();
+  SharedAddresses(sema_).find();
   resolve_globals();
   // Grows while library blocks are discovered.
-  for (uint32_t i = 0; i < declared.pous.size(); ++i) resolve_interface(i);
-  declared.complete = true;
+  for (uint32_t i = 0; i < sema_.declared.pous.size(); ++i) resolve_interface(i);
+  sema_.declared.complete = true;
   ask<OpenFunctions>().check_overloads();
-  objects.check();
-  check_containment();
+  sema_.objects.check();
+  ask<Types>().check_containment();
 }
 
-void Sema::resolve_globals() {
-  for (size_t i = 0; i < declared.global_order.size();
+void Interfaces::resolve_globals() {
+  for (size_t i = 0; i < sema_.declared.global_order.size();
        ++i) {  // grows with instances that are found
-    VarId id = declared.global_order[i];
+    VarId id = sema_.declared.global_order[i];
     resolve(id);
-    const Variable& variable = declared.variables[id.index];
-    program.types.edit(program.globals)
+    const Variable& variable = sema_.declared.variables[id.index];
+    sema_.program.types.edit(sema_.program.globals)
         .members.push_back(member_of(variable, ir::Section::kGlobal));
   }
-  if (for_tests()) ask<TestBuild>().add_test_globals();
+  if (sema_.for_tests()) ask<TestBuild>().add_test_globals();
 }
 
-ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
+ir::Member Interfaces::member_of(const Variable& variable, ir::Section section) {
   ir::Member member;
-  member.old_name = OldNames(*this).of(variable);
+  member.old_name = OldNames(sema_).of(variable);
   if (!variable.list.empty()) member.name = std::string(variable.list) + ".";
   if (!variable.method.empty()) member.name = std::string(variable.method) + "#";
   member.name += variable.name.text;
@@ -89,7 +92,7 @@ ir::Member Sema::member_of(const Variable& variable, ir::Section section) {
     member.address = variable.decl->address;
     if (variable.decl->incomplete) {
       member.address.bit_offset = ir::kOpenAddress;
-      member.address.bit_size = address_bits(variable.type);
+      member.address.bit_size = ask<Variables>().address_bits(variable.type);
     }
   }
   return member;
@@ -111,30 +114,30 @@ static void qualify_method(Sema& sema, Variable& variable, const PouInfo& block,
   names.insert(full());
 }
 
-void Sema::resolve_interface(uint32_t number) {
-  PouInfo& info = declared.pous[number];
+void Interfaces::resolve_interface(uint32_t number) {
+  PouInfo& info = sema_.declared.pous[number];
   if (info.open || info.resolved) return;
   info.resolved = true;
   if (info.base != kNoPou) resolve_interface(info.base);
-  Within scope(*this, number);
   for (VarId id : info.variables) resolve(id);
   std::vector<ir::Member> members;
-  if (info.base != kNoPou) members = program.types[declared.pous[info.base].self].members;
+  if (info.base != kNoPou)
+    members = sema_.program.types[sema_.declared.pous[info.base].self].members;
   std::set<std::string> names;
   for (const ir::Member& member : members) names.insert(ir::fold_name(member.name));
   for (VarId id : info.members) {
-    Variable& variable = declared.variables[id.index];
-    qualify_method(*this, variable, info, names);
+    Variable& variable = sema_.declared.variables[id.index];
+    qualify_method(sema_, variable, info, names);
     members.push_back(member_of(variable, section_of(ir_section(variable))));
   }
   const bool block = info.decl->kind == PouKind::kFunctionBlock || info.as_block;
-  if (for_tests() && block) ask<TestBuild>().add_mock_members(info, members);
+  if (sema_.for_tests() && block) ask<TestBuild>().add_mock_members(info, members);
   bool instance = info.self.valid() && info.owner == kNoPou;
-  if (instance) program.types.edit(info.self).members = std::move(members);
+  if (instance) sema_.program.types.edit(info.self).members = std::move(members);
   if (!info.id.valid()) return;
-  ir::Pou& pou = program.pous[info.id.index];
+  ir::Pou& pou = sema_.program.pous[info.id.index];
   for (VarId id : info.locals) {
-    const Variable& variable = declared.variables[id.index];
+    const Variable& variable = sema_.declared.variables[id.index];
     ir::LocalKind kind =
         id == info.result ? ir::LocalKind::kReturn : local_kind(ir_section(variable));
     pou.locals.push_back({std::string(variable.name.text), variable.type, kind});

@@ -3,6 +3,7 @@
 #include <unordered_set>
 
 #include "frontend/sema/sema.h"
+#include "frontend/sema/variables.h"
 #include "ir/types/location.h"
 
 namespace frontend {
@@ -49,14 +50,14 @@ std::string address_key(const ir::DirectAddress& address, ir::TypeId type) {
 }
 
 // 0: an address with another size than the type's, whatever that is, is none of its own.
-uint32_t Sema::address_bits(ir::TypeId type) const {
-  if (!type.valid() || !program.types.is_scalar(type)) return 0;
-  ir::Scalar machine = program.types.scalar(type);
+uint32_t Variables::address_bits(ir::TypeId type) const {
+  if (!type.valid() || !sema_.program.types.is_scalar(type)) return 0;
+  ir::Scalar machine = sema_.program.types.scalar(type);
   return machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
 }
 
-bool Sema::holds_instance(ir::TypeId type) const {
-  const ir::TypeTable& types = program.types;
+bool Variables::holds_instance(ir::TypeId type) const {
+  const ir::TypeTable& types = sema_.program.types;
   const auto is_one = [&](ir::TypeId at) { return types.is_instance(element_of(types, at)); };
   return is_one(type) ||
          any_member(types, type, [&](const ir::Member& member) { return is_one(member.type); });
@@ -64,21 +65,22 @@ bool Sema::holds_instance(ir::TypeId type) const {
 
 // Why a variable of this type cannot be there; empty: it can. An open address (`%I*`) may leave
 // out the size.
-std::string Sema::address_problem(ir::TypeId type, const ir::DirectAddress& address, bool open) {
-  std::string is = "is `" + report.type_text(type) + "`";
+std::string Variables::address_problem(ir::TypeId type, const ir::DirectAddress& address,
+                                       bool open) {
+  std::string is = "is `" + sema_.report.type_text(type) + "`";
   bool marker = address.area == ir::DirectArea::kMarker;
-  bool plain = ir::is_locatable(program.types, type) || (marker && !holds_instance(type));
+  bool plain = ir::is_locatable(sema_.program.types, type) || (marker && !holds_instance(type));
   if (!plain) return is + ", which cannot have an address";
   if (uint32_t bits = address_bits(type); bits != 0) {
     if (bits == address.bit_size || (open && address.bit_size == 0)) return {};
     return is + ", the address has " + std::to_string(address.bit_size) + " bits";
   }
-  bool bits = address.bit_size == 1 && ir::located_bools(program.types, type, address) != 0;
+  bool bits = address.bit_size == 1 && ir::located_bools(sema_.program.types, type, address) != 0;
   if (open || bits || address.bit_offset % 8 == 0) return {};
   return is + ", which begins at a byte";
 }
 
-void Sema::check_address(const Variable& variable) {
+void Variables::check_address(const Variable& variable) {
   if (!variable.decl->has_address || variable.hidden || variable.decl->levels.count != 0) return;
   const VarDecl& decl = *variable.decl;
   std::string problem = address_problem(variable.type, decl.address, decl.incomplete);
@@ -97,7 +99,7 @@ void Sema::check_address(const Variable& variable) {
 
 // AT %I* of a member: each variable of the structure's type has such a place, which VAR_CONFIG
 // gives it.
-bool Sema::check_field_address(const VarDecl& field, ir::TypeId type) {
+bool Variables::check_field_address(const VarDecl& field, ir::TypeId type) {
   std::string problem = field.incomplete
                             ? address_problem(type, field.address, true)
                             : "is a member: all variables of its type would share the address";
@@ -108,46 +110,48 @@ bool Sema::check_field_address(const VarDecl& field, ir::TypeId type) {
   return false;
 }
 
-bool Sema::holds_input(ir::TypeId type) const {
-  return any_member(program.types, type, [](const ir::Member& member) {
+bool Variables::holds_input(ir::TypeId type) const {
+  return any_member(sema_.program.types, type, [](const ir::Member& member) {
     return member.address.area == ir::DirectArea::kInput;
   });
 }
 
-ir::TypeId Sema::type_of_direct(const ir::DirectAddress& address) const {
+ir::TypeId Variables::type_of_direct(const ir::DirectAddress& address) const {
   switch (address.bit_size) {
     case 1:
-      return program.types.elementary(ir::Kind::kBool);
+      return sema_.program.types.elementary(ir::Kind::kBool);
     case 8:
-      return program.types.elementary(ir::Kind::kByte);
+      return sema_.program.types.elementary(ir::Kind::kByte);
     case 16:
-      return program.types.elementary(ir::Kind::kWord);
+      return sema_.program.types.elementary(ir::Kind::kWord);
     case 32:
-      return program.types.elementary(ir::Kind::kDword);
+      return sema_.program.types.elementary(ir::Kind::kDword);
     default:
-      return program.types.elementary(ir::Kind::kLword);
+      return sema_.program.types.elementary(ir::Kind::kLword);
   }
 }
 
 // A bare %QX0.0 in code is a global variable of that name, one per address. A
 // declared global at exactly this address is the same variable.
-uint32_t Sema::direct_member(const Expr& expr) {
+uint32_t Variables::direct_member(const Expr& expr) {
   std::string name = ir::fold_name(expr.name.text);
-  if (auto known = addresses.direct_members.find(name); known != addresses.direct_members.end()) {
+  if (auto known = sema_.addresses.direct_members.find(name);
+      known != sema_.addresses.direct_members.end()) {
     return known->second;
   }
-  ir::Type& globals = program.types.edit(program.globals);
-  uint32_t& keys = addresses.direct_members[kKeyCount];
+  ir::Type& globals = sema_.program.types.edit(sema_.program.globals);
+  uint32_t& keys = sema_.addresses.direct_members[kKeyCount];
   for (; keys < globals.members.size(); ++keys) {
     const ir::Member& member = globals.members[keys];
     const bool located = member.address.area != ir::DirectArea::kNone;
-    if (located) addresses.direct_members.emplace(address_key(member.address, member.type), keys);
+    if (located)
+      sema_.addresses.direct_members.emplace(address_key(member.address, member.type), keys);
   }
-  const ir::DirectAddress address = tree.directs[expr.number].address;
+  const ir::DirectAddress address = sema_.tree.directs[expr.number].address;
   const ir::TypeId type = type_of_direct(address);
   const auto size = static_cast<uint32_t>(globals.members.size());
   const uint32_t index =
-      addresses.direct_members.emplace(address_key(address, type), size).first->second;
+      sema_.addresses.direct_members.emplace(address_key(address, type), size).first->second;
   if (index == size) {
     ir::Member member;
     member.name = expr.name.text;
@@ -155,9 +159,9 @@ uint32_t Sema::direct_member(const Expr& expr) {
     member.section = ir::Section::kGlobal;
     member.address = address;
     globals.members.push_back(std::move(member));
-    addresses.direct_uses.push_back({address, type, expr.span, std::string(expr.name.text)});
+    sema_.addresses.direct_uses.push_back({address, type, expr.span, std::string(expr.name.text)});
   }
-  addresses.direct_members.emplace(std::move(name), index);
+  sema_.addresses.direct_members.emplace(std::move(name), index);
   return index;
 }
 

@@ -1,7 +1,9 @@
 // What `x.name` and `name()` mean where blocks, interfaces and bases have members with code.
+#include "frontend/sema/expressions.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/variables.h"
 
 namespace frontend {
 namespace {}  // namespace
@@ -9,7 +11,8 @@ namespace {}  // namespace
 // Quiet for plain names.
 bool Objects::names_method(const Expr& expr) {
   uint32_t owner = sema_.declared.block_of(sema_.scope_);
-  if (expr.kind == ExprKind::kName && sema_.find_variable(expr).valid()) return false;
+  if (expr.kind == ExprKind::kName && sema_.ask<Variables>().find_variable(expr).valid())
+    return false;
   if (expr.kind == ExprKind::kMember) {
     if (sema_.namespaces.is_scope(sema_.tree[expr.operand])) return false;
     owner = receiver(expr.operand);
@@ -72,17 +75,18 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
     const Variable& variable = sema_.resolve(id);
     if (own) {
       check_access(variable.access, variable.pou, expr.name);
-      return sema_.variable_note(id);
+      return sema_.ask<Expressions>().variable_note(id);
     }
     bool open = variable.access == Access::kPublic || variable.access == Access::kInternal;
     if (sema_.in_test() && variable.section != VarSection::kInOut) {
-      if (variable.storage == Storage::kGlobal) return sema_.variable_note(id);  // VAR_STAT
+      if (variable.storage == Storage::kGlobal)
+        return sema_.ask<Expressions>().variable_note(id);  // VAR_STAT
       open = variable.section != VarSection::kExternal;
     }
     if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
       sema_.mark_used(id);
       check_access(variable.access, variable.pou, expr.name);
-      if (variable.storage == Storage::kGlobal) return sema_.variable_note(id);
+      if (variable.storage == Storage::kGlobal) return sema_.ask<Expressions>().variable_note(id);
       note.type = variable.type;
       return note;
     }

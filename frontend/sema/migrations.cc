@@ -1,4 +1,5 @@
 #include "frontend/sema/migrations.h"
+#include "frontend/sema/types.h"
 
 #include <algorithm>
 #include <set>
@@ -78,7 +79,7 @@ ir::TypeId Migrations::type_of(const Attribute& rule) {
   const bool good = found != nullptr && found->self.valid() && found->owner == kNoPou &&
                     found->decl->kind != PouKind::kInterface;
   if (good) return found->self;
-  const std::optional<TypeUse> type = sema_.find_type(rule.value);
+  const std::optional<TypeUse> type = sema_.ask<Types>().find_type(rule.value);
   const ir::TypeTable& types = sema_.program.types;
   const bool structure = type && type->type.valid() &&
                          types[type->type].kind == ir::Kind::kStruct &&

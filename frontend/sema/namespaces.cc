@@ -1,5 +1,6 @@
 // What names mean: the one place that knows the rules of namespaces.
 #include "frontend/sema/namespaces.h"
+#include "frontend/sema/variables.h"
 
 #include <algorithm>
 
@@ -292,7 +293,7 @@ std::string Namespaces::path_of(const Expr& expr) const {
 }
 
 bool Namespaces::is_namespace(const Expr& expr) {
-  return is_path(expr) && !sema_.find_variable(*head_of(expr)).valid();
+  return is_path(expr) && !sema_.ask<Variables>().find_variable(*head_of(expr)).valid();
 }
 
 bool Namespaces::is_path(const Expr& expr) const {
@@ -327,7 +328,8 @@ VarId Namespaces::find_global(const Expr& member) {
 
 const GlobalList* Namespaces::list(const Expr& head) {
   const bool plain = head.kind == ExprKind::kName;
-  if (plain && (head.global || sema_.find_variable(head.name).valid())) return nullptr;
+  if (plain && (head.global || sema_.ask<Variables>().find_variable(head.name).valid()))
+    return nullptr;
   auto found = sema_.declared.lists.find(find(NameSort::kList, head));
   return found == sema_.declared.lists.end() ? nullptr : &found->second;
 }

@@ -4,9 +4,11 @@
 #include "frontend/sema/open_functions.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
 
 namespace frontend {
 namespace {
@@ -179,8 +181,8 @@ bool OpenFunctions::bind_array(const Match& match, const Spec& spec, NameMap<Not
     generic.try_emplace(element.name.text, note);
     return true;
   }
-  Sema::Within scope(sema_, kNoPou);
-  ir::TypeId wanted = sema_.resolve_type(spec.element).type;
+  const Sema::Within outside(sema_, kNoPou);
+  ir::TypeId wanted = Types(sema_).resolve_type(spec.element).type;
   if (!wanted.valid() || wanted == array.base) return wanted.valid();
   error(DiagnosticCode::kBadGenericArgument, span,
         "an array of `" + sema_.report.type_text(array.base) + "` where one of `" +
@@ -246,7 +248,7 @@ uint32_t OpenFunctions::instance_of(uint32_t pou, const ParameterTypes& types,
   for (size_t i = 0; i < types.size() && i < info.variables.size(); ++i) {
     sema_.declared.variables[info.variables[i].index].bound = types[i];
   }
-  if (sema_.declared.complete) sema_.resolve_interface(number);
+  if (sema_.declared.complete) sema_.ask<Interfaces>().resolve_interface(number);
   return number;
 }
 

@@ -15,9 +15,15 @@ class Phase {
   explicit Phase(Sema& sema, const PouScope& scope = {}) : sema_(sema), scope_(scope) {}
 
   // The type of an expression, and what else is known of it, before its context has spoken.
-  const Note& infer(ExprId expr) const { return sema_.infer(expr); }
+  const Note& infer(ExprId expr) const {
+    Note& known = sema_.facts.of(scope_, expr);
+    return known.progress == Progress::kDone ? known : infer_anew(expr, known);
+  }
   // A variable with its type and its initial value.
-  const Variable& resolve(VarId id) const { return sema_.resolve(id); }
+  const Variable& resolve(VarId id) const {
+    const Variable& variable = sema_.declared.variables[id.index];
+    return variable.progress == Progress::kDone ? variable : resolve_anew(id);
+  }
 
   void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {}) const {
     sema_.report.error(scope_, code, span, std::move(text), std::move(fix));
@@ -42,6 +48,10 @@ class Phase {
 
   Sema& sema_;
   PouScope scope_;
+
+ private:
+  const Note& infer_anew(ExprId expr, Note& known) const;
+  const Variable& resolve_anew(VarId id) const;
 };
 
 }  // namespace frontend

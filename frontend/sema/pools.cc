@@ -1,5 +1,7 @@
 #include "frontend/sema/pools.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/interfaces.h"
+#include "frontend/sema/types.h"
 
 #include <algorithm>
 #include <charconv>
@@ -54,7 +56,7 @@ uint32_t Pools::count_of(const Attribute& attribute) {
 
 void Pools::add_type(const TypeDecl& decl, const Attribute& attribute) {
   Sema::Within scope(sema_, kNoPou);
-  const ir::TypeId type = sema_.resolve_type(decl.spec).type;
+  const ir::TypeId type = sema_.ask<Types>().resolve_type(decl.spec).type;
   if (!type.valid()) return;
   const ir::Kind kind = sema_.program.types[type].kind;
   const bool storable = kind != ir::Kind::kReferenceTo && kind != ir::Kind::kInterface;
@@ -86,7 +88,7 @@ uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
   block.vars.push_back(std::move(value));
   const uint32_t number = sema_.ask<Collection>().add_pou(made, false, made.name.text);
   sema_.objects.inherit();
-  sema_.resolve_interface(number);
+  sema_.ask<Interfaces>().resolve_interface(number);
   return number;
 }
 
@@ -173,8 +175,8 @@ const Pool* Pools::of_new(ExprId id) {
     if (!name.empty() && ir::same_name(pool.name, name)) return &pool;
   }
   const PouInfo* block = name.empty() ? nullptr : sema_.declared.find_pou(name);
-  const bool type =
-      expr->kind == ExprKind::kType || block != nullptr || (!name.empty() && sema_.find_type(name));
+  const bool type = expr->kind == ExprKind::kType || block != nullptr ||
+                    (!name.empty() && sema_.ask<Types>().find_type(name));
   const std::string shown = name.empty() ? "this" : "`" + std::string(name) + "`";
   if (!type) {
     sema_.error(DiagnosticCode::kBadPool, expr->span, shown + " is no type with a pool",

@@ -1,5 +1,7 @@
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 
 #include <algorithm>
 #include <set>
@@ -28,11 +30,12 @@ bool same_place(const Located& a, const Located& b) { return place_key(a) == pla
 
 }  // namespace
 
-const AddressView* direct_view(const Sema& sema, const Expr& expr) {
+const AddressView* direct_view(Sema& sema, const Expr& expr) {
   const auto& views = sema.addresses.views;
   if (views.empty()) return nullptr;
   const ir::DirectAddress address = sema.tree.directs[expr.number].address;
-  const auto found = views.find(address_key(address, sema.type_of_direct(address)));
+  const auto found =
+      views.find(address_key(address, sema.ask<Variables>().type_of_direct(address)));
   return found == views.end() ? nullptr : &found->second;
 }
 
@@ -45,7 +48,7 @@ std::string SharedAddresses::path_of(const Variable& variable) const {
 }
 
 uint64_t SharedAddresses::bits_of(ir::TypeId type, const ir::DirectAddress& address) {
-  if (const uint32_t bits = sema_.address_bits(type); bits != 0) return bits;
+  if (const uint32_t bits = sema_.ask<Variables>().address_bits(type); bits != 0) return bits;
   if (!natural_) natural_ = ir::natural_layouts(sema_.program.types);
   return ir::located_bits(sema_.program.types, *natural_, type, address);
 }
@@ -60,8 +63,9 @@ void SharedAddresses::collect_variables() {
     if (!located || variable.hidden || variable.section == VarSection::kExternal) continue;
     if (variable.storage == Storage::kLocal) continue;  // reported with the variable
     Sema::Within scope(sema_, variable.pou);
-    const ir::TypeId type = sema_.resolve_type(decl->spec).type;
-    if (type.valid() && sema_.address_problem(type, decl->address, false).empty()) {
+    const ir::TypeId type = sema_.ask<Types>().resolve_type(decl->spec).type;
+    if (type.valid() &&
+        sema_.ask<Variables>().address_problem(type, decl->address, false).empty()) {
       found.emplace_back(i, type);
     }
   }
@@ -78,7 +82,7 @@ void SharedAddresses::collect_direct() {
     if (expr.kind != ExprKind::kDirect) return;
     const ir::DirectAddress address = sema_.tree.directs[expr.number].address;
     if (!can_share(address)) return;
-    const ir::TypeId type = sema_.type_of_direct(address);
+    const ir::TypeId type = sema_.ask<Variables>().type_of_direct(address);
     const Located located{address, type, expr.span, ir::address_text(address)};
     if (seen.contains(place_key(located))) return;
     if (!sema_.for_tests() && is_in_test(sema_.tree, expr.span.begin)) return;
@@ -164,7 +168,7 @@ std::string SharedAddresses::why_not(const Place& place, bool one_place) const {
 // Whatever bits others write have to be a value of it.
 std::string SharedAddresses::why_not_type(ir::TypeId type) const {
   const ir::TypeTable& types = sema_.program.types;
-  if (sema_.address_bits(type) == 1) {
+  if (sema_.ask<Variables>().address_bits(type) == 1) {
     return types[type].kind == ir::Kind::kBool ? std::string() : "not each bit is a value of it";
   }
   std::vector<ir::TypeId> open{type};

@@ -64,6 +64,6 @@ class SharedAddresses {
 };
 
 // Where a bare address shares bytes; null: it is a global by itself.
-const AddressView* direct_view(const Sema& sema, const Expr& expr);
+const AddressView* direct_view(Sema& sema, const Expr& expr);
 
 }  // namespace frontend

@@ -7,8 +7,11 @@
 #include "base/hash.h"
 #include "base/limits.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/interfaces.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 #include "ir/types/stamps.h"
 
 namespace frontend {
@@ -100,7 +103,7 @@ void Objects::check_start_arguments() {
   }
   auto check = [&](SpecId id) {
     if (!id.valid() || !has_arguments(sema_.tree, id)) return;
-    check_start_arguments(id, sema_.resolve_type(id).type, good);
+    check_start_arguments(id, sema_.ask<Types>().resolve_type(id).type, good);
   };
   for (const TypeDecl& decl : sema_.tree.types) check(decl.spec);
   for (const Spec& spec : sema_.tree.specs) {
@@ -141,7 +144,7 @@ void Objects::add_start() {
   for (uint32_t i = 0; i < count; ++i) {
     const PouInfo& program = sema_.declared.pous[i];
     if (!program.as_block || program.start == kNoPou) continue;
-    start_globals_.push_back(sema_.program_variable(program.name, false));
+    start_globals_.push_back(sema_.ask<Variables>().program_variable(program.name, false));
   }
   const bool pools = !sema_.pools.all().empty();
   if (sema_.declared.pous.size() == count && start_globals_.empty() && !pools) return;
@@ -176,13 +179,14 @@ uint32_t Objects::add_made_method(uint32_t block, std::string_view name, MadeCod
   info.made = code;
   sema_.ask<Collection>().add_code(info,
                                    sema_.program.types[owner.self].name + "." + std::string(name));
-  sema_.resolve_interface(number);
+  sema_.ask<Interfaces>().resolve_interface(number);
   return number;
 }
 
 // The global through which code reaches a program instance.
 VarId Objects::program_global(const std::string& name, const PouInfo& program) {
-  if (ir::same_name(name, program.decl->name.text)) return sema_.program_variable(name, false);
+  if (ir::same_name(name, program.decl->name.text))
+    return sema_.ask<Variables>().program_variable(name, false);
   return add_hidden_global(sema_.declared.keep_name(name), program.self, program.decl->name.span);
 }
 
@@ -198,7 +202,7 @@ VarId Objects::add_hidden_global(std::string_view name, ir::TypeId type, base::S
   variable.type = type;
   variable.progress = Progress::kDone;
   sema_.declared.variables.push_back(variable);
-  sema_.place_global(id);
+  sema_.ask<Variables>().place_global(id);
   return id;
 }
 
@@ -247,7 +251,7 @@ void Objects::add_start_program() {
   made.name = {ir::kStartProgram, made.span};
   const uint32_t number = sema_.ask<Collection>().add_pou(made, false, made.name.text);
   sema_.declared.pous[number].made = MadeCode::kStart;
-  sema_.resolve_interface(number);
+  sema_.ask<Interfaces>().resolve_interface(number);
   ir::Task task;
   task.name = ir::kStartProgram;
   task.period_ns = 0;

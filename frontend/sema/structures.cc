@@ -7,6 +7,8 @@
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
+#include "frontend/sema/types.h"
+#include "frontend/sema/variables.h"
 #include "ir/types/old_names.h"
 
 namespace frontend {
@@ -52,7 +54,7 @@ std::vector<std::string> old_names_of_bits(const std::vector<std::string>& names
 }  // namespace
 
 // A structure on its way into the type table.
-struct Sema::StructBuild {
+struct Types::StructBuild {
   ir::Type type;
   NameMap<StructureField> names;
   int32_t bit_member = -1;  // BIT members still go there
@@ -62,11 +64,11 @@ struct Sema::StructBuild {
   std::vector<std::string> bit_rules;  // their old names (ir/types/old_names.h)
 };
 
-TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
+TypeUse Types::resolve_struct(SpecId id, const Spec& spec) {
   StructBuild build;
   build.type.kind = spec.kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
   build.type.overlap = spec.kind == SpecKind::kUnion || spec.overlap;
-  build.type.name = facts.of(scope_, id).name.text;
+  build.type.name = sema_.facts.of(scope_, id).name.text;
   bool good = !spec.element.valid() || add_base(build, spec);
   for (const VarDecl& field : spec.fields) good = add_field(build, field) && good;
   close_bits(build);
@@ -76,40 +78,42 @@ TypeUse Sema::resolve_struct(SpecId id, const Spec& spec) {
     return {};
   }
   if (build.type.overlap && !check_overlap(build.type, spec.span)) return {};
-  ir::TypeId made = facts.of(scope_, id).forward;
+  ir::TypeId made = sema_.facts.of(scope_, id).forward;
   if (made.valid()) {
-    program.types.edit(made) = std::move(build.type);
+    sema_.program.types.edit(made) = std::move(build.type);
   } else {
-    made = program.types.declare(std::move(build.type));
+    made = sema_.program.types.declare(std::move(build.type));
   }
-  declared.structures.emplace(made, std::move(build.names));
+  sema_.declared.structures.emplace(made, std::move(build.names));
   return {made, {}};
 }
 
-bool Sema::add_base(StructBuild& build, const Spec& spec) {
+bool Types::add_base(StructBuild& build, const Spec& spec) {
   TypeUse base = resolve_type(spec.element);
   if (!base.type.valid()) return false;
-  if (!ir::is_structure(program.types[base.type].kind)) {
-    error(DiagnosticCode::kTypeMismatch, tree[spec.element].span,
-          "`" + report.type_text(base.type) + "` is no structure; only structures can be extended");
+  if (!ir::is_structure(sema_.program.types[base.type].kind)) {
+    error(DiagnosticCode::kTypeMismatch, sema_.tree[spec.element].span,
+          "`" + sema_.report.type_text(base.type) +
+              "` is no structure; only structures can be extended");
     return false;
   }
-  build.type.members = program.types[base.type].members;
-  build.names = declared.structures[base.type];
+  build.type.members = sema_.program.types[base.type].members;
+  build.names = sema_.declared.structures[base.type];
   return true;
 }
 
 // What lies on top of each other must be plain data: an ID of an instance would be damaged.
-bool Sema::check_overlap(const ir::Type& type, base::SourceSpan span) {
+bool Types::check_overlap(const ir::Type& type, base::SourceSpan span) {
   for (const ir::Member& member : type.members) {
     ir::TypeId inner = member.type;
-    while (program.types[inner].kind == ir::Kind::kArray) inner = program.types[inner].base;
-    bool good = !program.types.is_instance(inner);
-    if (good && ir::is_structure(program.types[inner].kind)) {
-      good = check_overlap(program.types[inner], span);
+    while (sema_.program.types[inner].kind == ir::Kind::kArray)
+      inner = sema_.program.types[inner].base;
+    bool good = !sema_.program.types.is_instance(inner);
+    if (good && ir::is_structure(sema_.program.types[inner].kind)) {
+      good = check_overlap(sema_.program.types[inner], span);
     } else if (!good) {
       error(DiagnosticCode::kBadReference, span,
-            "`" + member.name + "` is an instance of `" + report.type_text(inner) +
+            "`" + member.name + "` is an instance of `" + sema_.report.type_text(inner) +
                 "` and cannot share its place with other members",
             "keep function blocks outside of unions");
     }
@@ -118,36 +122,36 @@ bool Sema::check_overlap(const ir::Type& type, base::SourceSpan span) {
   return true;
 }
 
-bool Sema::is_bit(SpecId id) const {
-  const Spec& spec = tree[id];
+bool Types::is_bit(SpecId id) const {
+  const Spec& spec = sema_.tree[id];
   return spec.kind == SpecKind::kNamed && spec.qualifiers.count == 0 &&
-         ir::same_name(spec.name.text, "BIT") && !declared.types.contains(spec.name.text);
+         ir::same_name(spec.name.text, "BIT") && !sema_.declared.types.contains(spec.name.text);
 }
 
-bool Sema::add_field(StructBuild& build, const VarDecl& field) {
+bool Types::add_field(StructBuild& build, const VarDecl& field) {
   TypeUse use = resolve_type(field.spec);
   if (!use.type.valid()) return false;
-  if (!field.names.empty()) objects.check_instance(use.type, field.names[0].span);
+  if (!field.names.empty()) sema_.objects.check_instance(use.type, field.names[0].span);
   bool bit = is_bit(field.spec);
   ir::Member member;
   member.type = use.type;
-  check_binding(field, use.type);
-  const bool saved = std::exchange(facts.binds_at_start, !build.type.overlap);
+  ask<Variables>().check_binding(field, use.type);
+  const bool saved = std::exchange(sema_.facts.binds_at_start, !build.type.overlap);
   member.init = field.init.valid() ? ask<Constants>().initial_value(field.init, use.type, use.init)
                                    : use.init;
-  facts.binds_at_start = saved;
+  sema_.facts.binds_at_start = saved;
   if (!bit) close_bits(build);
   if (field.has_address) {
     member.address = field.address;
     if (field.address.area != ir::DirectArea::kNone) {
-      if (!check_field_address(field, use.type)) return false;
+      if (!ask<Variables>().check_field_address(field, use.type)) return false;
       member.address.bit_offset = ir::kOpenAddress;
-      member.address.bit_size = address_bits(use.type);
+      member.address.bit_size = ask<Variables>().address_bits(use.type);
     }
   }
   for (const Name& name : field.names) {
     StructureField where{static_cast<uint32_t>(build.type.members.size()), -1};
-    if (bit) where = add_bit(build, name, member.init, renamed_from(tree, field.attributes));
+    if (bit) where = add_bit(build, name, member.init, renamed_from(sema_.tree, field.attributes));
     where.spec = field.spec;
     if (!build.names.emplace(name.text, where).second) {
       error(DiagnosticCode::kDuplicateName, name.span, quoted(name) + " is declared twice");
@@ -155,7 +159,7 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
     }
     if (bit) continue;
     member.name = name.text;
-    member.old_name = OldNames(*this).of_rule(field.attributes);
+    member.old_name = OldNames(sema_).of_rule(field.attributes);
     build.type.overlap |= field.has_address && field.address.area == ir::DirectArea::kNone;
     build.type.members.push_back(member);
   }
@@ -163,31 +167,31 @@ bool Sema::add_field(StructBuild& build, const VarDecl& field) {
 }
 
 // Neighbouring BIT members share a BYTE, which has the names of all of them.
-StructureField Sema::add_bit(StructBuild& build, const Name& name, ir::ConstId init,
-                             std::string rule) {
+StructureField Types::add_bit(StructBuild& build, const Name& name, ir::ConstId init,
+                              std::string rule) {
   if (build.bits == kBitsPerByte) close_bits(build);
   if (build.bit_member < 0) {
     build.bit_member = static_cast<int32_t>(build.type.members.size());
     ir::Member word;
-    word.type = program.types.elementary(ir::Kind::kByte);
+    word.type = sema_.program.types.elementary(ir::Kind::kByte);
     build.type.members.push_back(std::move(word));
   }
   build.bit_names.emplace_back(name.text);
   build.bit_rules.push_back(std::move(rule));
-  if (init.valid() && program.constants[init].bits != 0) {
+  if (init.valid() && sema_.program.constants[init].bits != 0) {
     build.bit_defaults |= uint64_t{1} << build.bits;
   }
   return {static_cast<uint32_t>(build.bit_member), static_cast<int32_t>(build.bits++)};
 }
 
-void Sema::close_bits(StructBuild& build) {
+void Types::close_bits(StructBuild& build) {
   if (build.bit_member >= 0) {
     ir::Member& word = build.type.members[static_cast<size_t>(build.bit_member)];
     word.name = joined_bits(build.bit_names, build.bit_names.size());
     const std::vector<std::string> rules =
         old_names_of_bits(build.bit_names, build.bit_rules, build.bit_defaults);
-    word.old_name = OldNames(*this).add(ir::old_names_rule(rules));
-    if (build.bit_defaults != 0) word.init = program.constants.scalar(build.bit_defaults);
+    word.old_name = OldNames(sema_).add(ir::old_names_rule(rules));
+    if (build.bit_defaults != 0) word.init = sema_.program.constants.scalar(build.bit_defaults);
   }
   build.bit_member = -1;
   build.bits = 0;

@@ -4,6 +4,7 @@
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/task_attributes.h"
+#include "frontend/sema/variables.h"
 #include "ir/types/longest_time.h"
 
 namespace frontend {
@@ -61,7 +62,7 @@ uint32_t Configuration::event_of(ExprId id) {
           "copy the bit to a global variable of its own");
     return ir::kNoEvent;
   }
-  if (boolean && expr.kind == ExprKind::kDirect) return sema_.direct_member(expr);
+  if (boolean && expr.kind == ExprKind::kDirect) return sema_.ask<Variables>().direct_member(expr);
   if (boolean && note.variable.valid()) {
     const Variable& variable = resolve(note.variable);
     if (variable.storage == Storage::kGlobal && !variable.constant) return variable.index;

@@ -1,5 +1,6 @@
 // Type expressions -> TypeIds. Aliases, named strings, arrays and subranges stand
 // for their content; structures and enumerations are types of their own.
+#include "frontend/sema/types.h"
 #include "base/limits.h"
 #include "frontend/sema/collection.h"
 #include "frontend/sema/constants.h"
@@ -15,36 +16,36 @@ constexpr uint64_t kMaxElements = base::kMaxTypeBytes;
 
 }  // namespace
 
-TypeUse Sema::resolve_type(SpecId id) {
+TypeUse Types::resolve_type(SpecId id) {
   if (!id.valid()) return {};
-  SpecInfo& info = facts.of(scope_, id);
+  SpecInfo& info = sema_.facts.of(scope_, id);
   if (info.progress == Progress::kDone) return info.use;
-  const Spec& spec = tree[id];
+  const Spec& spec = sema_.tree[id];
   if (info.progress == Progress::kBusy) {
     error(DiagnosticCode::kRecursiveType, spec.span,
           "this type is needed to know its own size or bounds",
           "break the circle; a type cannot contain itself");
     return {};
   }
-  if (facts.depth >= kMaxTypeChain) {
+  if (sema_.facts.depth >= kMaxTypeChain) {
     error(DiagnosticCode::kTooDeep, spec.span, "types depend on each other too deeply");
     return {};
   }
   info.progress = Progress::kBusy;
-  ++facts.depth;
+  ++sema_.facts.depth;
   TypeUse use = resolve_kind(id, spec);
   info.use = use;
   // The default may name the type itself: Colour : (Red, Green) := Green.
   info.progress = Progress::kDone;
   if (use.type.valid() && info.default_value.valid()) {
     info.use.init = ask<Constants>().initial_value(info.default_value, use.type, use.init);
-    if (spec.kind == SpecKind::kEnum) program.types.edit(use.type).init = info.use.init;
+    if (spec.kind == SpecKind::kEnum) sema_.program.types.edit(use.type).init = info.use.init;
   }
-  --facts.depth;
+  --sema_.facts.depth;
   return info.use;
 }
 
-TypeUse Sema::resolve_kind(SpecId id, const Spec& spec) {
+TypeUse Types::resolve_kind(SpecId id, const Spec& spec) {
   switch (spec.kind) {
     case SpecKind::kError:
       return {};
@@ -70,46 +71,48 @@ TypeUse Sema::resolve_kind(SpecId id, const Spec& spec) {
   return {};
 }
 
-std::optional<TypeUse> Sema::find_type(std::string_view name) {
+std::optional<TypeUse> Types::find_type(std::string_view name) {
   if (auto kind = kind_of_name(name)) {
     if (*kind == ir::Kind::kString)
-      return TypeUse{program.types.string(kDefaultStringCapacity), {}};
+      return TypeUse{sema_.program.types.string(kDefaultStringCapacity), {}};
     if (*kind == ir::Kind::kWstring) {
-      return TypeUse{program.types.wstring(kDefaultStringCapacity), {}};
+      return TypeUse{sema_.program.types.wstring(kDefaultStringCapacity), {}};
     }
-    return TypeUse{program.types.elementary(*kind), {}};
+    return TypeUse{sema_.program.types.elementary(*kind), {}};
   }
-  if (ir::same_name(name, "BIT") && !declared.types.contains(name)) {
-    return TypeUse{program.types.elementary(ir::Kind::kBool), {}};
+  if (ir::same_name(name, "BIT") && !sema_.declared.types.contains(name)) {
+    return TypeUse{sema_.program.types.elementary(ir::Kind::kBool), {}};
   }
-  bool declared_pou = declared.pou_names.contains(name);
-  if (!declared_pou && !declared.types.contains(name)) ask<Collection>().use_library_type(name);
-  if (auto known = declared.types.find(name); known != declared.types.end()) {
-    Within global(*this, kNoPou);
-    return resolve_type(known->second);
+  bool declared_pou = sema_.declared.pou_names.contains(name);
+  if (!declared_pou && !sema_.declared.types.contains(name))
+    ask<Collection>().use_library_type(name);
+  if (auto known = sema_.declared.types.find(name); known != sema_.declared.types.end()) {
+    const Sema::Within outside(sema_, kNoPou);
+    return Types(sema_).resolve_type(known->second);
   }
-  if (!declared.pou_names.contains(name) && !ask<Collection>().use_library(name))
+  if (!sema_.declared.pou_names.contains(name) && !ask<Collection>().use_library(name))
     return std::nullopt;
-  const PouInfo& pou = declared.pous[declared.pou_names.find(name)->second];
+  const PouInfo& pou = sema_.declared.pous[sema_.declared.pou_names.find(name)->second];
   if (!pou.self.valid()) return std::nullopt;
   // A variable of an interface refers to what implements it.
   const bool interface = pou.decl->kind == PouKind::kInterface;
-  return TypeUse{interface ? program.types.ref_to(pou.self) : pou.self, {}};
+  return TypeUse{interface ? sema_.program.types.ref_to(pou.self) : pou.self, {}};
 }
 
-TypeUse Sema::resolve_named(const Spec& spec) {
+TypeUse Types::resolve_named(const Spec& spec) {
   if (scope_.meaning != nullptr) {
     const NameMap<ir::TypeId>& generic = scope_.meaning->generic;
     if (auto found = generic.find(spec.name.text); found != generic.end()) {
       return {found->second, {}};
     }
   }
-  const std::string_view name = namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name);
+  const std::string_view name =
+      sema_.namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name);
   if (auto use = find_type(name)) return *use;
   NearestName nearest(name);
-  nearest.offer_all(declared.types);
-  nearest.offer_all(declared.pou_names);
-  nearest.offer_all(library.pous);
+  nearest.offer_all(sema_.declared.types);
+  nearest.offer_all(sema_.declared.pou_names);
+  nearest.offer_all(sema_.library.pous);
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     nearest.offer(ir::elementary_name(static_cast<ir::Kind>(i)));
   }
@@ -118,7 +121,7 @@ TypeUse Sema::resolve_named(const Spec& spec) {
   return {};
 }
 
-TypeUse Sema::resolve_string(const Spec& spec) {
+TypeUse Types::resolve_string(const Spec& spec) {
   int64_t capacity = kDefaultStringCapacity;
   if (spec.length.valid()) {
     auto length = ask<Constants>().fold_integer(spec.length);
@@ -132,10 +135,12 @@ TypeUse Sema::resolve_string(const Spec& spec) {
     return {};
   }
   uint32_t characters = static_cast<uint32_t>(capacity);
-  return {spec.wide ? program.types.wstring(characters) : program.types.string(characters), {}};
+  return {
+      spec.wide ? sema_.program.types.wstring(characters) : sema_.program.types.string(characters),
+      {}};
 }
 
-TypeUse Sema::resolve_array(const Spec& spec) {
+TypeUse Types::resolve_array(const Spec& spec) {
   if (spec.dims.size() > base::kMaxDimensions) {
     error(DiagnosticCode::kTooManyDimensions, spec.span,
           std::to_string(spec.dims.size()) + " dimensions",
@@ -154,7 +159,7 @@ TypeUse Sema::resolve_array(const Spec& spec) {
     auto high = ask<Constants>().fold_integer(dim.high);
     if (!low || !high) return {};
     if (*low > *high) {
-      error(DiagnosticCode::kBadBounds, tree[dim.low].span,
+      error(DiagnosticCode::kBadBounds, sema_.tree[dim.low].span,
             "bounds " + std::to_string(*low) + ".." + std::to_string(*high),
             "write the lower bound first");
       return {};
@@ -171,22 +176,23 @@ TypeUse Sema::resolve_array(const Spec& spec) {
   }
   TypeUse element = resolve_type(spec.element);
   if (!element.type.valid() || dims.empty()) return {};
-  TypeUse use{program.types.array(element.type, std::move(dims)), {}};
+  TypeUse use{sema_.program.types.array(element.type, std::move(dims)), {}};
   if (element.init.valid()) {
     ir::ConstValue all;
     all.elements.push_back({0, static_cast<uint32_t>(elements), element.init});
-    use.init = program.constants.add(std::move(all));
+    use.init = sema_.program.constants.add(std::move(all));
   }
   return use;
 }
 
-TypeUse Sema::resolve_subrange(const Spec& spec) {
+TypeUse Types::resolve_subrange(const Spec& spec) {
   TypeUse base = resolve_type(spec.element);
   if (!base.type.valid()) return {};
-  Traits traits = traits_of(program.types, base.type);
+  Traits traits = traits_of(sema_.program.types, base.type);
   if (!traits.integer && !traits.bits) {
     error(DiagnosticCode::kTypeMismatch, spec.span,
-          "a subrange of `" + report.type_text(base.type) + "`", "subranges need an integer type");
+          "a subrange of `" + sema_.report.type_text(base.type) + "`",
+          "subranges need an integer type");
     return {};
   }
   auto low = ask<Constants>().fold_bits(spec.low, base.type);
@@ -200,19 +206,20 @@ TypeUse Sema::resolve_subrange(const Spec& spec) {
     return {};
   }
   // The lowest value is the default where zero is not in the range (IEC table 11).
-  TypeUse use{program.types.subrange(without_range(program.types, base.type), from, to), {}};
-  if (from > 0 || to < 0) use.init = program.constants.scalar(static_cast<uint64_t>(from));
+  TypeUse use{sema_.program.types.subrange(without_range(sema_.program.types, base.type), from, to),
+              {}};
+  if (from > 0 || to < 0) use.init = sema_.program.constants.scalar(static_cast<uint64_t>(from));
   return use;
 }
 
-TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
-  TypeUse base{program.types.elementary(ir::Kind::kInt), {}};
+TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {
+  TypeUse base{sema_.program.types.elementary(ir::Kind::kInt), {}};
   if (spec.element.valid()) base = resolve_type(spec.element);
   if (!base.type.valid()) return {};
-  Traits traits = traits_of(program.types, base.type);
+  Traits traits = traits_of(sema_.program.types, base.type);
   if (!traits.integer && !traits.bits) {
     error(DiagnosticCode::kTypeMismatch, spec.span,
-          "an enumeration of `" + report.type_text(base.type) + "`",
+          "an enumeration of `" + sema_.report.type_text(base.type) + "`",
           "enumerations need an integer type");
     return {};
   }
@@ -224,9 +231,9 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
   }
   ir::Type type;
   type.kind = ir::Kind::kEnum;
-  type.name = facts.of(scope_, id).name.text;
-  type.base = without_range(program.types, base.type);
-  Limits limits = limits_of(program.types.scalar(base.type));
+  type.name = sema_.facts.of(scope_, id).name.text;
+  type.base = without_range(sema_.program.types, base.type);
+  Limits limits = limits_of(sema_.program.types.scalar(base.type));
   NameMap<bool> names;
   Wide next = 0;
   for (const Enumerator& enumerator : spec.enumerators) {
@@ -242,19 +249,19 @@ TypeUse Sema::resolve_enum(SpecId id, const Spec& spec) {
     }
     if (next < limits.low || next > limits.high) {
       error(DiagnosticCode::kLiteralOutOfRange, enumerator.name.span,
-            "`" + name + "` is " + wide_text(next) + "; `" + report.type_text(base.type) +
+            "`" + name + "` is " + wide_text(next) + "; `" + sema_.report.type_text(base.type) +
                 "` ends at " + wide_text(limits.high));
       return {};
     }
     type.literals.push_back(
-        {name, static_cast<int64_t>(next), OldNames(*this).of_rule(enumerator.attributes)});
+        {name, static_cast<int64_t>(next), OldNames(sema_).of_rule(enumerator.attributes)});
     next += 1;
   }
   if (type.literals.empty()) return {};
   if (int64_t first = type.literals[0].value; first != 0) {
-    type.init = program.constants.scalar(static_cast<uint64_t>(first));
+    type.init = sema_.program.constants.scalar(static_cast<uint64_t>(first));
   }
-  return {program.types.declare(std::move(type)), {}};
+  return {sema_.program.types.declare(std::move(type)), {}};
 }
 
 }  // namespace frontend
