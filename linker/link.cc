@@ -290,7 +290,8 @@ class Linker {
         return base::Error{base::Refusal::kUndefinedSymbol,
                            "migration `" + name + "`: its object is missing."};
       }
-      image_.migrations.push_back({row.type, pou->second, row.inverse, row.values});
+      image_.migrations.push_back(
+          {row.type, pou->second, row.inverse, !row.from.empty(), row.from, row.values});
     }
     return base::Ok{};
   }

@@ -259,8 +259,10 @@ class PouMerger {
         const auto pou = merged_pou(from->program, row.function, names);
         if (!pou || !known.emplace(pou->index, row.inverse).second) continue;
         translator.forget_problem();
-        rows_.merged->migrations.push_back(
-            {*pou, translator.type(row.type), row.inverse, row.values});
+        ir::Migration merged = row;
+        merged.function = *pou;
+        merged.type = translator.type(row.type);
+        rows_.merged->migrations.push_back(std::move(merged));
         if (!translator.problem().empty())
           refuse(uses(rows_.merged->pous[pou->index].name, translator));
       }

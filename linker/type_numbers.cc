@@ -30,6 +30,8 @@ class Renumberer {
   void operator()(T&) const {}
   template <class E>
   void enumerator(E&, uint32_t) const {}
+  template <class L, class U>
+  void enumerators(L&, uint32_t, U&, uint32_t) const {}
   template <class T, class Each>
   void list(std::vector<T>& v, size_t, Each each) const {
     for (T& item : v) each(item);

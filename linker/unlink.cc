@@ -98,7 +98,8 @@ class Unlinker {
       program_.overrides.push_back({row.type, numbers_[row.prototype], numbers_[row.target]});
     }
     for (const ir::LinkedMigration& row : image_.migrations) {
-      program_.migrations.push_back({numbers_[row.pou], row.type, row.inverse, row.values});
+      program_.migrations.push_back(
+          {numbers_[row.pou], row.type, row.from, row.inverse, row.values});
     }
   }
 

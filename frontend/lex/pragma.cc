@@ -62,8 +62,21 @@ std::string_view read_more(PragmaReader& reader, std::string_view first) {
   return first;
 }
 
-// NAME ['part'] [word] := 'text' [, inverse]. Whoever looks for it says what is wrong with one that
-// is written otherwise.
+// [, from := 'text'] [, inverse]
+void read_migration(PragmaReader& reader, PragmaAttribute& out) {
+  if (!reader.accept_sign(',')) return;
+  if (reader.accept_word("from")) {
+    const bool head = reader.accept_sign(':') && reader.accept_sign('=');
+    if (!head || reader.kind() != PragmaReader::Kind::kText || reader.piece().empty()) return;
+    out.from = reader.piece();
+    reader.next();
+    if (!reader.accept_sign(',')) return;
+  }
+  out.marked = reader.accept_word("inverse");
+}
+
+// NAME ['part'] [word] := 'text' [, from := 'text'] [, inverse]. Whoever looks for it says what is
+// wrong with one that is written otherwise.
 PragmaAttribute read_rule(PragmaReader& reader, std::string_view word) {
   PragmaAttribute out;
   out.name = reader.piece();
@@ -77,7 +90,7 @@ PragmaAttribute read_rule(PragmaReader& reader, std::string_view word) {
   if (!head || reader.kind() != PragmaReader::Kind::kText) return out;
   out.value = reader.piece();
   reader.next();
-  if (word == "of") out.marked = reader.accept_sign(',') && reader.accept_word("inverse");
+  if (word == "of") read_migration(reader, out);
   if (word == "from") out.value = read_more(reader, out.value);
   out.has_value = reader.kind() == PragmaReader::Kind::kEnd;
   return out;

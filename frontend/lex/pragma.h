@@ -35,11 +35,12 @@ struct PragmaAttribute {
   bool has_value = false;
   std::string_view part;  // {renamed '.part' from := 'old'}
   bool marked = false;    // `, inverse` after the value
+  std::string_view from;  // `, from := 'Type'` after the value
 };
 // `{attribute 'name'}`, `{attribute 'name' := 'value'}`, and `{renamed from := 'old'}` as an
 // attribute `renamed`, whose value is missing when it is written in another way, and goes on to the
-// last one of several old names. nullopt for all other pragmas. So are `{migration of := 'Type'}`
-// and `{old := 'x'}`, `{new := 'x'}`.
+// last one of several old names. nullopt for all other pragmas. So are `{migration of := 'Type'}`,
+// `{migration of := 'Type', from := 'Other'}` and `{old := 'x'}`, `{new := 'x'}`.
 inline constexpr std::string_view kRenamedAttribute = "renamed";
 inline constexpr std::string_view kMigrationAttribute = "migration";
 std::optional<PragmaAttribute> read_attribute(std::string_view pragma);

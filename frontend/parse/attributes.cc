@@ -53,6 +53,7 @@ void Parser::add_attribute(base::SourceSpan span) {
                               found->has_value,
                               found->value,
                               found->marked,
+                              found->from,
                               found->part});
 }
 

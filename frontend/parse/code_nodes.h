@@ -37,6 +37,7 @@ struct Attribute {  // names are compared without case
   bool has_value = false;
   std::string_view value;  // between the quotes, escapes as written
   bool marked = false;     // {migration of := 'T', inverse}
+  std::string_view from;   // {migration of := 'T', from := 'S'}
   std::string_view part;   // {renamed '.part' from := 'old'}
 };
 

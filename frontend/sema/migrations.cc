@@ -49,13 +49,14 @@ void Migrations::add(PouInfo& info, const Attribute& rule) {
   }
   if (!rule.has_value) {
     return error(rule.name.span, "this pragma cannot be read",
-                 "write {migration of := 'Type'} or {migration of := 'Type', inverse}");
+                 "write {migration of := 'Type'}, with `, from := 'Other'` where it was of another "
+                 "type, and `, inverse` for the way back");
   }
   ir::Migration row;
   row.function = info.id;
   row.inverse = rule.marked;
   row.type = type_of(rule);
-  if (!row.type.valid()) return;
+  if (!row.type.valid() || !read_other(row, rule)) return;
   bool gives = false;
   for (VarId id : info.locals) {
     const Variable& variable = sema_.resolve(id);
@@ -66,7 +67,7 @@ void Migrations::add(PouInfo& info, const Attribute& rule) {
     if (!add_value(row, variable)) return;
     gives = gives || variable.section == VarSection::kOutput;
   }
-  if (!gives) {
+  if (!gives && row.from.empty()) {
     return error(info.decl->name.span, quoted(info.name) + " gives no value",
                  "declare VAR_OUTPUT with the name of the variable that it makes");
   }
@@ -88,6 +89,27 @@ ir::TypeId Migrations::type_of(const Attribute& rule) {
   error(rule.name.span, quoted(rule.value) + " is no program, function block or structure",
         "name the one whose variables migrate, or VAR_GLOBAL");
   return {};
+}
+
+// What the running version calls it need not be in the sources any more.
+bool Migrations::read_other(ir::Migration& row, const Attribute& rule) {
+  if (rule.from.empty()) return true;
+  const ir::TypeTable& types = sema_.program.types;
+  const std::string& name = types[row.type].name;
+  row.from = rule.from;
+  ir::TypeId other;
+  if (const PouInfo* found = sema_.find_pou(rule.from); found != nullptr) {
+    other = found->self;
+  } else if (const std::optional<TypeUse> type = sema_.find_type(rule.from)) {
+    other = type->type;
+  }
+  if (other.valid()) row.from = types[other].name;
+  const bool is_other = row.type != sema_.program.globals && !ir::same_name(row.from, name);
+  if (is_other && (!other.valid() || types[other].kind == types[row.type].kind)) return true;
+  error(rule.name.span,
+        quoted(rule.from) + " is nothing that " + quoted(rule.value) + " can have been",
+        "name another type of the same kind: a structure, a function block or a program");
+  return false;
 }
 
 bool Migrations::add_value(ir::Migration& row, const Variable& variable) {

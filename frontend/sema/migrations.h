@@ -21,6 +21,7 @@ class Migrations {
  private:
   void add(PouInfo& info, const Attribute& rule);
   ir::TypeId type_of(const Attribute& rule);
+  bool read_other(ir::Migration& row, const Attribute& rule);
   bool add_value(ir::Migration& row, const Variable& variable);
   bool is_new_member(const ir::Migration& row, const Variable& variable, const std::string& name);
   bool is_plain(ir::TypeId type, uint32_t depth) const;

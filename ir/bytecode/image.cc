@@ -38,7 +38,15 @@ bool has_task_exchange(const Image& image) {
   return false;
 }
 
+bool has_other_types(const Image& image) {
+  return std::any_of(image.migrations.begin(), image.migrations.end(),
+                     [](const LinkedMigration& row) { return row.from_other; });
+}
+
 uint32_t version_of(const Image& image, bool has_sources) {
+  if (has_other_types(image)) {
+    return has_sources ? kImageVersionOfOtherTypesAndSources : kImageVersionOfOtherTypes;
+  }
   if (has_task_exchange(image)) {
     return has_sources ? kImageVersionOfTaskExchangeAndSources : kImageVersionOfTaskExchange;
   }
@@ -57,7 +65,8 @@ uint32_t sections_of(uint32_t version) {
   const bool has_sources = version == kImageVersionOfSources ||
                            version == kImageVersionOfContentsAndSources ||
                            version == kImageVersionOfHeldAndSources ||
-                           version == kImageVersionOfTaskExchangeAndSources;
+                           version == kImageVersionOfTaskExchangeAndSources ||
+                           version == kImageVersionOfOtherTypesAndSources;
   return has_sources ? kImageSectionCount + 1 : kImageSectionCount;
 }
 

@@ -157,6 +157,8 @@ struct LinkedMigration {
   TypeId type;
   uint32_t pou = 0;
   bool inverse = false;
+  bool from_other = false;  // only then
+  std::string from = {};
   std::vector<MigratedName> values;
 };
 

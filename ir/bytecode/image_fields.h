@@ -176,7 +176,8 @@ template <class Archive, class T>
 void migration_fields(Archive& a, T& v) {
   a(v.type);
   a(v.pou);
-  a(v.inverse);
+  a.enumerators(v.inverse, 2, v.from_other, 2);
+  if (v.from_other) a(v.from);
   a.list(v.values, 9, [&](auto& value) {
     a(value.parameter);
     a(value.member);

@@ -19,6 +19,9 @@ inline constexpr uint32_t kImageVersionOfHeldAndSources = 14;
 // (task_policy.h).
 inline constexpr uint32_t kImageVersionOfTaskExchange = 15;
 inline constexpr uint32_t kImageVersionOfTaskExchangeAndSources = 16;
-inline constexpr uint32_t kLastImageVersion = kImageVersionOfTaskExchangeAndSources;
+// The version of images with a migration from another type (LinkedMigration::from).
+inline constexpr uint32_t kImageVersionOfOtherTypes = 17;
+inline constexpr uint32_t kImageVersionOfOtherTypesAndSources = 18;
+inline constexpr uint32_t kLastImageVersion = kImageVersionOfOtherTypesAndSources;
 
 }  // namespace ir

@@ -31,6 +31,10 @@ class MigrationVerifier {
     if (!code) return bad("", "it is no function");
     const LinkedPou& pou = image_.pous[row.pou];
     if (!is_owner(row.type)) return bad(pou.name, "its values belong to no instance or structure");
+    if (row.from_other && row.from.empty()) return bad(pou.name, "the other type has no name");
+    if (row.from_other && row.type == image_.globals) {
+      return bad(pou.name, "the globals were never of another type");
+    }
     for (const MigratedName& value : row.values) {
       const auto same = [&](const MigratedName& other) {
         return other.parameter == value.parameter;

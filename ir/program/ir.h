@@ -316,7 +316,9 @@ struct MigratedName {
 };
 struct Migration {
   PouId function;
-  TypeId type;  // a program, function block or the globals
+  TypeId type;  // a program, function block, structure or the globals
+  // The type that it was, of the running version, when it was another one; else "".
+  std::string from = {};
   bool inverse = false;
   std::vector<MigratedName> values;
 };

@@ -300,7 +300,7 @@ base::Status Change::enter() {
 
 void Change::take_back() {
   const auto interrupted = std::exchange(interrupted_, nullptr);
-  const bool undone = undo_steps(true).ok();
+  const bool undone = undo_steps(Exits::kSkip, true).ok();
   interrupted_ = interrupted;
   base::check(undone, "a switch whose FB_Init trapped cannot be undone");
   // What FB_Exit and start code wrote to other variables goes with it.
@@ -312,16 +312,16 @@ void Change::take_back() {
   }
 }
 
-base::Result<SwitchReport> Change::undo() {
-  return guarded([&] { return undo_steps(); });
+base::Result<SwitchReport> Change::undo(Exits exits) {
+  return guarded([&] { return undo_steps(exits); });
 }
 
-base::Result<SwitchReport> Change::undo_steps(bool whatever_happens) {
+base::Result<SwitchReport> Change::undo_steps(Exits exits, bool whatever_happens) {
   if (state_ != State::kTrial) {
     return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
   }
   if (!controller_.at_boundary()) return no_boundary();
-  const bool leaves = !pending_->leaving.at_undo.empty() && !whatever_happens;
+  const bool leaves = !pending_->leaving.at_undo.empty() && exits == Exits::kRun;
   if (!pending_->waiting || (leaves && !pending_->kept_back)) return not_primed();
   SwitchReport report = report_begin();
   uint8_t* memory = controller_.memory().data();

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,12 @@ struct SwitchReport {
   uint64_t missed = 0;        // releases, because of it; counted by who runs the next cycles
   FateCounts counts;          // what was done
   int64_t ago_ns = 0;         // that it was, when a controller said so
+};
+
+// What an undo does with FB_Exit of what goes with it.
+enum class Exits : uint8_t {
+  kRun,
+  kSkip,  // for one that traps whatever happens: it would keep the edit on trial for ever
 };
 
 // Runs a job at a boundary and waits for its end.
@@ -142,7 +149,9 @@ class Change {
   // Trial -> Idle, or the trial of the edit before, with version 1 again; at a boundary, after
   // prime(). Inverse plan on the current state; values that the change dropped or narrowed come
   // back as they were, if nobody wrote them since.
-  base::Result<SwitchReport> undo();
+  base::Result<SwitchReport> undo(Exits exits = Exits::kRun);
+  // In trial: the instances of the running version with an FB_Exit that undo() takes away.
+  std::span<const uint32_t> leaving() const;
   // Before undo(), not at a boundary: what the version before needs to run is made again where
   // another edit has been prepared or undone since. Mostly there is nothing to do. An error changes
   // nothing: the trial goes on, and another call is another try.
@@ -177,7 +186,7 @@ class Change {
   void give_back(Plan& forward, const ir::Image& next, TakenOut taken_out) const;
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps(bool again);
-  base::Result<SwitchReport> undo_steps(bool whatever_happens = false);
+  base::Result<SwitchReport> undo_steps(Exits exits, bool whatever_happens = false);
   base::Status enter();
   void take_back();
   void put_back_kept();

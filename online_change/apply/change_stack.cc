@@ -24,6 +24,11 @@ base::Status Change::room() const {
                          "undo some first"};
 }
 
+std::span<const uint32_t> Change::leaving() const {
+  if (state_ != State::kTrial) return {};
+  return pending_->leaving.at_undo;
+}
+
 base::Status Change::accept() { return accept_oldest(on_trial()); }
 
 base::Status Change::accept_oldest(size_t edits) {

@@ -11,18 +11,20 @@ using ir::TypeId;
 
 constexpr uint32_t kNone = 0xffffffffu;
 
+TypeId type_named(const ir::Image& image, ir::Kind kind, const std::string& name) {
+  for (uint32_t i = ir::kElementaryCount; i < image.types.size(); ++i) {
+    const ir::Type& candidate = image.types[TypeId(i)];
+    if (candidate.kind == kind && ir::same_name(candidate.name, name)) return TypeId(i);
+  }
+  return {};
+}
+
 }  // namespace
 
 TypeId same_type_in(const ir::Image& image, const ir::Image& other, TypeId type) {
   const ir::Type& wanted = other.types[type];
-  if (wanted.kind == ir::Kind::kGlobals) return image.globals;
-  for (uint32_t i = ir::kElementaryCount; i < image.types.size(); ++i) {
-    const ir::Type& candidate = image.types[TypeId(i)];
-    if (candidate.kind == wanted.kind && ir::same_name(candidate.name, wanted.name)) {
-      return TypeId(i);
-    }
-  }
-  return {};
+  return wanted.kind == ir::Kind::kGlobals ? image.globals
+                                           : type_named(image, wanted.kind, wanted.name);
 }
 
 Migrations::Migrations(const ir::Image& old_image, const ir::Image& new_image, Way way)
@@ -52,8 +54,10 @@ void Migrations::fail(const ir::LinkedMigration& row, std::string why) {
 
 void Migrations::add(uint32_t number) {
   const ir::LinkedMigration& row = new_.migrations[number];
-  if (is_carried(row)) return;
-  const TypeId old_type = same_type_in(old_, new_, row.type);
+  const bool carried = is_carried(row);
+  if (carried && !row.from_other) return;
+  const TypeId old_type = row.from_other ? type_named(old_, new_.types[row.type].kind, row.from)
+                                         : same_type_in(old_, new_, row.type);
   if (!old_type.valid()) return;  // nothing lives that could migrate
   const bool there = way_ == Way::kThere;
   if (row.inverse == there) {
@@ -73,7 +77,9 @@ void Migrations::add(uint32_t number) {
   migration.from_type = there ? old_type : row.type;
   migration.to_type = there ? row.type : old_type;
   for (size_t i = 0; i < row.values.size(); ++i) {
-    if (!add_value(migration, row, i)) return;
+    if (add_value(migration, row, i)) continue;
+    if (carried) error_.reset();  // the types went on from what it was written for
+    return;
   }
   const auto place = static_cast<uint32_t>(rows_.size());
   for (uint32_t i = 0; i < migration.values.size(); ++i) {

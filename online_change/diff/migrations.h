@@ -35,7 +35,8 @@ class Migrations {
  public:
   enum class Way : uint8_t { kThere, kBack };
   // `old_image` has the new version's names (ir/bytecode/renames.h). A migration that the old
-  // version carries already, of the same name and code, does not apply again.
+  // version carries already, of the same name and code, does not apply again, unless it is from
+  // another type: that is applied once for each variable, when its type changes.
   Migrations(const ir::Image& old_image, const ir::Image& new_image, Way way);
 
   // A migration that cannot be carried out between these versions (kBadMigration).

@@ -1,5 +1,6 @@
 // Case 14: a variable that goes and one of the same type that comes may be one variable with a new
-// name. The report says how to keep its value.
+// name. Case 62: another type takes the place of one. The report says how to keep the values.
+#include <algorithm>
 #include <map>
 #include <unordered_set>
 
@@ -39,7 +40,34 @@ std::string_view seen_from(const std::string& name, const std::string& other) {
   return std::string_view(name).substr(same ? list + 1 : 0);
 }
 
+// As a part of the name of a function.
+std::string plain(std::string name) {
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
 }  // namespace
+
+std::string migration_hint(const ir::Type& before, const ir::Type& after) {
+  return "; {migration of := '" + after.name + "', from := '" + before.name + "'} FUNCTION " +
+         plain(before.name) + "_to_" + plain(after.name) +
+         " END_FUNCTION would keep what has the same name, and its parameters the rest";
+}
+
+// Where one structure takes the place of another, only a migration tells its members apart from
+// those of other values of that type.
+void TypeDiffer::propose_migration(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const {
+  const ir::Type& before = old_.types[old_type];
+  const ir::Type& after = new_.types[new_type];
+  if (before.name.empty() || after.name.empty() || ir::same_name(before.name, after.name)) return;
+  for (FateRow& row : diff.rows) {
+    if (row.fate == Fate::kDropped && row.may_lose && row.reason == "removed") {
+      row.reason += "; a parameter of a {migration of := '" + after.name + "', from := '" +
+                    before.name + "'} can take it over";
+      return;
+    }
+  }
+}
 
 void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const {
   // What a migration reads or another step takes over goes on already.

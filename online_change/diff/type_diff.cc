@@ -53,6 +53,14 @@ TypeDiff without_rule(std::string old_text, std::string new_text, uint32_t size,
   return diff;
 }
 
+// Does a migration say that `type` was one of that name?
+bool was_another(const ir::Image& image, TypeId type, const std::string& name) {
+  return std::any_of(image.migrations.begin(), image.migrations.end(),
+                     [&](const ir::LinkedMigration& row) {
+                       return row.from_other && row.type == type && ir::same_name(row.from, name);
+                     });
+}
+
 bool is_input(const Member& member) { return member.address.area == ir::DirectArea::kInput; }
 
 }  // namespace
@@ -82,7 +90,9 @@ bool same_instance_type(const ir::Image& old_image, TypeId old_type, const ir::I
                         TypeId new_type) {
   const ir::Type& from = old_image.types[old_type];
   const ir::Type& to = new_image.types[new_type];
-  return from.kind == to.kind && ir::same_name(from.name, to.name);
+  if (from.kind != to.kind) return false;
+  return ir::same_name(from.name, to.name) || was_another(new_image, new_type, from.name) ||
+         was_another(old_image, old_type, to.name);
 }
 
 const TypeDiff& TypeDiffer::area(TypeId old_type, TypeId new_type) {
@@ -254,7 +264,8 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
       add_dropped_member(diff, old_type, i, new_type);
   }
   if (is_area) move_parts(diff, old_type, new_type);
-  if (!back_) propose_renames(diff, old_type, new_type);
+  if (!back_ && ir::same_name(from.name, to.name)) propose_renames(diff, old_type, new_type);
+  if (!back_) propose_migration(diff, old_type, new_type);
   join(diff.ops);
   uint32_t old_size = is_area ? old_layout.used : old_layout.size;
   uint32_t new_size = is_area ? new_layout.used : new_layout.size;

@@ -117,6 +117,7 @@ class TypeDiffer {
   uint64_t count_leaves(const ir::Image& image, ir::TypeId type);
   std::string rename_note(const ir::Member& old_member) const;
   void propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
+  void propose_migration(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
   Conversion conversion_of(ir::TypeId old_type, ir::TypeId new_type) const;
 
   const ir::Image& old_;
@@ -131,12 +132,17 @@ class TypeDiffer {
   bool failed_ = false;
 };
 
+// "; {migration of := 'B', from := 'A'} FUNCTION A_to_B ...": what keeps values where another type
+// takes the place, for the reason of a row.
+std::string migration_hint(const ir::Type& before, const ir::Type& after);
+
 // Two unions that have members in common, each of one type and at one place: these say what the
 // bytes of both are.
 bool keeps_union_bytes(const ir::Image& old_image, ir::TypeId old_type, const ir::Image& new_image,
                        ir::TypeId new_type);
 
-// A function block or program of the same name: instances live on.
+// A function block or program of the same name, or one that a migration of either version says the
+// other was: instances live on.
 bool same_instance_type(const ir::Image& old_image, ir::TypeId old_type, const ir::Image& new_image,
                         ir::TypeId new_type);
 

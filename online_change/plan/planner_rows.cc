@@ -182,6 +182,9 @@ uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
       row.old_type = old_.types.text(before);
       row.may_lose = live_inside_[replaced];
       row.reason = "another type" + type_rename_hint(before, instance.type);
+      if (row.may_lose && row.reason == "another type") {
+        row.reason += migration_hint(old_.types[before], new_.types[instance.type]);
+      }
     }
     return row;
   });

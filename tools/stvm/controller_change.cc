@@ -5,10 +5,12 @@
 #include "online_change/apply/deadline.h"
 #include "online_change/plan/pause.h"
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/shown_edits.h"
 
 namespace stvm {
 
 using online_change::Change;
+using online_change::Exits;
 
 namespace {
 
@@ -242,10 +244,12 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 // wrong.
 base::Result<base::Bytes> ControllerService::undo(const vm::Request& request) {
   base::Status newest = check_newest(request);
-  return newest.ok() ? undo_now({}) : newest.error();
+  if (!newest.ok()) return newest.error();
+  const bool skips = request.names.size() > 1 && request.names[1] == vm::kWithoutExit;
+  return undo_now({}, skips ? Exits::kSkip : Exits::kRun);
 }
 
-base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
+base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Exits exits) {
   if (change_.prepares() && !trials_.empty()) {  // an edit on top of the one that goes
     abort_why_ = "because the edit below it was undone";
     (void)give_up();
@@ -256,6 +260,8 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   int64_t done_ns = 0;
   const int64_t predicted_ns = change_.predicted_pause_ns();
   const base::Digest undone = controller_.verified().digest();
+  std::string left_out;
+  if (exits == Exits::kSkip) left_out = instances_text(controller_.image(), change_.leaving());
   online_change::Snapshot after = empty_snapshot();
   for (int attempt = 1; !report; ++attempt) {
     if (attempt != 1) boundary_.pause(kBetweenAttemptsNs);
@@ -263,7 +269,7 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
       const bool stopped = controller_.faulted() || stopping_trap(UINT64_MAX) != nullptr;
       if (!stopped && !time_for_switch() && attempt != kSwitchAttempts) return;
       missed_before = controller_.missed_releases();
-      report.emplace(change_.undo());
+      report.emplace(change_.undo(exits));
       if (report->ok() && stopped) go_on_hot();
       done_ns = clock_.now_ns();
       if (report->ok()) keeper_.take(after);
@@ -277,9 +283,8 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why) {
   let_store_follow();
   complain(keeper_.save(after));
   note_units("undone", (*report)->cycle_after);
-  const std::string which = "edit " + undone_.back().edit.name;
   note_switch(online_change::Event::kUndone, undone, **report, predicted_ns,
-              why.empty() ? which : which + ": " + why);
+              undone_text(left_out, why));
   not_undone_.clear();
   forget_rehearsal();
   probation_.reset();

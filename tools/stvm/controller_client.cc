@@ -293,7 +293,9 @@ base::Status ControllerClient::learn_edition(const base::Result<base::Bytes>& st
   return base::Ok{};
 }
 
-base::Result<FatePage> ControllerClient::fates() { return fate_pages({}); }
+base::Result<FatePage> ControllerClient::fates(const std::string& way_back) {
+  return fate_pages(way_back.empty() ? std::vector<std::string>() : std::vector{way_back});
+}
 
 base::Result<std::vector<FateLine>> ControllerClient::every_fate() {
   base::Result<FatePage> all = fate_pages({vm::kEveryVariable});
@@ -336,9 +338,11 @@ base::Result<online_change::SwitchReport> ControllerClient::make_switch(
   return switch_report(std::move(request));
 }
 
-base::Result<online_change::SwitchReport> ControllerClient::undo(const std::string& edit) {
+base::Result<online_change::SwitchReport> ControllerClient::undo(const std::string& edit,
+                                                                 const std::string& way_back) {
   vm::Request request{.command = vm::Command::kUndo};
   if (!edit.empty()) request.names = {edit};
+  if (!way_back.empty()) request.names.push_back(way_back);
   return switch_report(std::move(request));
 }
 

@@ -62,7 +62,8 @@ class ControllerClient {
                      const std::string& note = {}, const std::string& taken_out = {});
   // The edit that was undone last, which has that name.
   base::Status stage_again(const std::string& edit);
-  base::Result<FatePage> fates();
+  // `way_back`: vm::kWithoutExit; else "".
+  base::Result<FatePage> fates(const std::string& way_back = {});
   // One line for each variable.
   base::Result<std::vector<FateLine>> every_fate();
   // Switches to what was staged here, or of nothing (E-14). `health`: a BOOL that must stay TRUE in
@@ -70,7 +71,8 @@ class ControllerClient {
   base::Result<online_change::SwitchReport> make_switch(uint32_t flags,
                                                         const std::string& health = {});
   // Undoes the newest edit on trial, which has that name; "": whatever it is.
-  base::Result<online_change::SwitchReport> undo(const std::string& edit = {});
+  base::Result<online_change::SwitchReport> undo(const std::string& edit = {},
+                                                 const std::string& way_back = {});
 
  private:
   static base::Result<ControllerClient> connect_here(const std::string& directory,

@@ -1,5 +1,6 @@
 // The fate report of a change that is staged, rehearsed or on trial (its way back), page by page.
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "online_change/diff/initial_data.h"
@@ -115,6 +116,11 @@ base::Result<base::Bytes> ControllerService::fates(const vm::Request& request) {
   page.predicted_pause_ns = change.predicted_pause_ns();
   page.boundary_bytes = plan.boundary_bytes;
   page.loss_count = live_->loss_count();
+  const bool skips = !request.names.empty() && request.names.front() == vm::kWithoutExit;
+  if (back && skips && !change.leaving().empty()) {
+    page.system.push_back({"FB_Exit", instances_text(controller_.image(), change.leaving()),
+                           "does not run for what goes"});
+  }
   return every ? every_page(request.offset, plan, next_image, std::move(page))
                : group_page(request.offset, plan, next_version, back, std::move(page));
 }
@@ -160,7 +166,8 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
   }
   page.edits = shown_edits(controller_.verified(), next);
   const vm::Controller& controller = rehearses() ? rehearsal_->controller() : controller_;
-  page.system = shown_system(controller, next, looked_at().next_forces());
+  std::ranges::move(shown_system(controller, next, looked_at().next_forces()),
+                    std::back_inserter(page.system));
   return encode(page);
 }
 

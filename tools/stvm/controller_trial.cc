@@ -86,8 +86,16 @@ void ControllerService::begin_or_end_chain(Trial& trial) {
   if (more || goes_on) more_of_ = more ? session_ : 0;
 }
 
-// With all that came before it as parts of the same (E-26). Once: what cannot be undone stays as it
-// is, for people to look at.
+std::string ControllerService::undone_text(const std::string& without,
+                                           const std::string& why) const {
+  std::string text = "edit " + undone_.back().edit.name;
+  if (!without.empty()) text += ", without FB_Exit of " + without;
+  return why.empty() ? text : text + ": " + why;
+}
+
+// With all that came before it as parts of the same (E-26). An FB_Exit that traps is left out then:
+// it is one of the version that must go. Once: what cannot be undone stays as it is, for people to
+// look at.
 void ControllerService::give_back(const std::string& why) {
   who_ = "controller";
   probation_.reset();
@@ -97,7 +105,11 @@ void ControllerService::give_back(const std::string& why) {
     vm::Request request{.command = vm::Command::kUndo};
     request.expected = controller_.verified().digest();
     request.edition = edition_;
-    undone = undo_now(why);
+    undone = undo_now(why, online_change::Exits::kRun);
+    if (!undone.ok() && undone.error().refusal == base::Refusal::kExitFailed) {
+      request.names = {trials_.back().edit.name, vm::kWithoutExit};
+      undone = undo_now(why, online_change::Exits::kSkip);
+    }
     if (recorder_ != nullptr) {
       undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();
     }

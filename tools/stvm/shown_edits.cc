@@ -1,5 +1,7 @@
 #include "tools/stvm/shown_edits.h"
 
+#include <algorithm>
+
 #include "tools/common/all_system_edits.h"
 #include "tools/common/source_edits.h"
 #include "tools/stvm/force_edits.h"
@@ -8,6 +10,7 @@ namespace stvm {
 namespace {
 
 constexpr size_t kShownEdits = 1000;
+constexpr size_t kNamedInstances = 3;
 
 }  // namespace
 
@@ -17,6 +20,17 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image,
                                                    {new_image.image(), new_image.encoded()});
   if (edits.size() > kShownEdits) edits.resize(kShownEdits);
   return edits;
+}
+
+std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids) {
+  std::string text;
+  for (const uint32_t id : ids.first(std::min(ids.size(), kNamedInstances))) {
+    text += (text.empty() ? "" : ", ") + image.instance_path(id);
+  }
+  if (ids.size() > kNamedInstances) {
+    text += " and " + std::to_string(ids.size() - kNamedInstances) + " more";
+  }
+  return text;
 }
 
 tools::SystemEdits shown_system(const vm::Controller& controller,

@@ -1,6 +1,9 @@
 // ShownEdits: what a change edits, as much as fits into one message. `stc diff` shows all of it.
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "ir/bytecode/verify.h"
 #include "tools/common/fate_report.h"
 #include "vm/runtime/controller.h"
@@ -12,5 +15,8 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image, const ir::Verifi
 tools::SystemEdits shown_system(const vm::Controller& controller,
                                 const ir::VerifiedImage& new_image,
                                 const vm::ForcedSet& next_forces);
+
+// "Main.pump, Main.tank and 3 more": of an image, by their numbers.
+std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids);
 
 }  // namespace stvm

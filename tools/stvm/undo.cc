@@ -20,6 +20,7 @@ constexpr tools::OptionRow kUndoOptions[] = {
     {"--only", nullptr, "take back this edit alone: those that were made later stay"},
     {"--allow-loss", nullptr, "with --only: even if live values are lost, as the report says"},
     {"--allow-overrun", nullptr, "with --only: even if a task may be delayed"},
+    {"--skip-exit", nullptr, "do not run FB_Exit of what goes: one that traps keeps the edit"},
     tools::kYesOption,
     tools::kDryRunOption,
     STVM_CONTROLLER_OPTIONS,
@@ -114,13 +115,14 @@ struct UndoOptions {
   bool dry_run = false;
   bool json = false;
   bool ask = false;  // after the report
+  std::string way_back = {};
 };
 
 base::Result<Undone> undo_one(ControllerClient& client, const std::string& name,
                               const UndoOptions& how) {
   base::Result<vm::StatusReport> status = client.status();
   if (!status.ok()) return status.error();
-  base::Result<FatePage> page = client.fates();
+  base::Result<FatePage> page = client.fates(how.way_back);
   if (!page.ok()) return page.error();
   Undone out{name, std::move(*page), std::nullopt};
   if (!how.json) std::fputs(fates_text(out.page).c_str(), stdout);
@@ -130,7 +132,7 @@ base::Result<Undone> undo_one(ControllerClient& client, const std::string& name,
     base::Status go = ask("Take it back now?", "not undone; the program on trial runs on");
     if (!go.ok()) return go.error();
   }
-  base::Result<online_change::SwitchReport> report = client.undo(name);
+  base::Result<online_change::SwitchReport> report = client.undo(name, how.way_back);
   if (!report.ok()) return report.error();
   out.report = *report;
   if (!how.json) std::fputs(switch_text((name + " undone").c_str(), *report).c_str(), stdout);
@@ -170,6 +172,12 @@ base::Status undo_only(const tools::Options& options, ControllerClient& client,
   if (options.arguments().size() != 1) {
     return base::Error{base::Refusal::kUsage, "undo --only: name one edit"};
   }
+  if (options.has("--skip-exit")) {
+    return base::Error{
+        base::Refusal::kUsage,
+        "undo --only is a change, whose FB_Exit runs; without --only the edits above "
+        "go too, and can be brought again"};
+  }
   SwitchOptions how;
   how.dry_run = options.has("--dry-run");
   if (how.dry_run) how.stage_flags |= vm::kRehearsal;
@@ -203,11 +211,12 @@ base::Status undo_edits(const tools::Options& options) {
   if (!may.ok()) return may;
   // A script that takes a change back is not held up for want of a person.
   const bool ask_first = may_ask && can_ask() && !more_go(*going, named);
+  const std::string way_back = options.has("--skip-exit") ? vm::kWithoutExit : "";
   std::vector<Undone> all;
   Names done;
   base::Status ended = base::Ok{};
   for (const std::string& name : *going) {
-    const UndoOptions how{dry_run, *json, ask_first && done.empty()};
+    const UndoOptions how{dry_run, *json, ask_first && done.empty(), way_back};
     base::Result<Undone> undone = undo_one(*client, name, how);
     if (!undone.ok()) ended = behind(done, undone.error());
     if (!undone.ok()) break;

@@ -63,6 +63,9 @@ inline constexpr uint32_t kAllStageFlags = 7;
 
 // As the name of a request for fates: one line for each variable instead of groups of them.
 inline constexpr const char* kEveryVariable = "every";
+// As the name of a request for the fates of the way back, and after the edit in one for undo:
+// FB_Exit of what goes does not run.
+inline constexpr const char* kWithoutExit = "without FB_Exit";
 
 struct Request {
   Command command = Command::kStatus;

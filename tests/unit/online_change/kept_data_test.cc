@@ -191,6 +191,29 @@ TEST_P(KeptDataBy, X1_case34_WhatFbExitWroteBeforeOneTrapsInAnUndoIsAsItWas) {
   EXPECT_EQ(plant.driver().on_trial(), 0u);
 }
 
+// The way out where one traps whatever happens: none of them runs, and all else is undone.
+TEST_P(KeptDataBy, X4_case34_AnUndoWithoutFbExitGoesBackAllTheSame) {
+  Plant plant(leaving_tank("", "narrow : INT := 5;"), no_slack());
+  plant.use(GetParam());
+  plant.run(2);
+  plant.change(leaving_tank(kLeaving, "narrow : SINT;"), true);
+  plant.run(3);
+  ASSERT_TRUE(plant.driver().prime().ok());
+  ASSERT_EQ(plant.driver().undo().error().refusal, Refusal::kExitFailed);
+  ASSERT_EQ(plant.driver().leaving().size(), 2u);
+  ASSERT_TRUE(plant.driver().undo(Exits::kSkip).ok());
+  plant.driver().collect();
+  EXPECT_EQ(plant.driver().on_trial(), 0u);
+  EXPECT_TRUE(plant.driver().leaving().empty());
+  EXPECT_EQ(plant.get("exits"), "0") << "that of the others has not run either";
+  EXPECT_EQ(plant.get("level[2]"), "0");
+  EXPECT_EQ(plant.get("narrow"), "5");
+  EXPECT_EQ(plant.get("Main.x"), "5");
+  plant.controller().cycle();
+  EXPECT_EQ(plant.get("Main.x"), "6");
+  EXPECT_EQ(plant.controller().trap_count(), 1u);
+}
+
 // What ends a switch or an undo behind FB_Exit.
 TEST_P(KeptDataBy, X1_C1_WhatFbExitWroteIsAsItWasWhereverItEnds) {
   for (const bool back : {false, true}) {

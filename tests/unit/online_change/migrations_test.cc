@@ -150,6 +150,7 @@ TEST(Migrations, X2_the_verifier_refuses_migrations_that_are_none) {
   EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.type = ir::TypeId(0); }));
   EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.values.pop_back(); }));
   EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.values[0] = row.values[1]; }));
+  EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.from_other = true; }));
   EXPECT_FALSE(sound([](ir::LinkedMigration& row) { row.values[0].output ^= true; }));
 }
 

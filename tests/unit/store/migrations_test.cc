@@ -61,6 +61,36 @@ class Start : public ::testing::Test {
   std::unique_ptr<Plc> plc_;
 };
 
+// Case 62: what has become another type keeps its retained values as well, and by a lost trial it
+// is again what it was.
+TEST_F(Start, X2_case62_AnotherTypeTakesOverRetainedValues) {
+  const auto line = [](const char* type, const std::string& migration) {
+    return "FUNCTION_BLOCK A VAR RETAIN n : INT := 1; m : INT; END_VAR ; END_FUNCTION_BLOCK "
+           "FUNCTION_BLOCK B VAR RETAIN m : DINT; n : INT; sum : DINT; END_VAR ; "
+           "END_FUNCTION_BLOCK " +
+           migration + "PROGRAM P VAR f : " + type + "; END_VAR f(); END_PROGRAM\n";
+  };
+  const std::string rule =
+      "{migration of := 'B', from := 'A'} FUNCTION A_to_B VAR_INPUT n, m : INT; END_VAR VAR_OUTPUT "
+      "sum : DINT; END_VAR sum := n + m; END_FUNCTION ";
+  begin(line("A", ""));
+  plc_->set("P.f.n", "20");
+  plc_->set("P.f.m", "3");
+  ASSERT_TRUE(plc_->save().ok());
+  ASSERT_TRUE(plc_->change(line("B", rule)).ok());
+  EXPECT_EQ(plc_->get("P.f.sum"), "23");
+  plc_->set("P.f.n", "21");
+  ASSERT_TRUE(plc_->save().ok());
+  lose_trial();
+  EXPECT_EQ(plc_->get("P.f.n"), "21");
+  EXPECT_EQ(plc_->get("P.f.m"), "3");
+  start_with(line("B", rule));
+  EXPECT_EQ(alarms(), "");
+  EXPECT_EQ(plc_->get("P.f.n"), "21");
+  EXPECT_EQ(plc_->get("P.f.m"), "3");
+  EXPECT_EQ(plc_->get("P.f.sum"), "24");
+}
+
 // Only values that are retained as a whole; each names itself when it cannot be.
 TEST_F(Start, X2_EachRetainedValueOfAStructureIsMigrated) {
   const auto points = [](const char* members, const char* migration) {

@@ -53,5 +53,38 @@ TEST(Standing, case34_ASwitchWaitsForTheStartCodeOfARestart) {
   }
 }
 
+// FB_Reinit is due in the next cycle after an undo, as the version says that came back: a switch
+// that is asked for before that waits for it.
+TEST(Standing, D3_case34_ASwitchWaitsForTheStartCodeOfAnUndo) {
+  const auto tank = [](int version, const char* in_tank, const char* in_main) {
+    return std::string("FUNCTION_BLOCK Tank VAR seen : DINT; ") + in_tank +
+           " END_VAR\nMETHOD FB_Reinit : BOOL seen := seen * 10 + " + std::to_string(version) +
+           "; END_METHOD END_FUNCTION_BLOCK\n"
+           "PROGRAM Main VAR t : Tank; n : DINT; " +
+           in_main + " END_VAR t(); n := n + 1; END_PROGRAM";
+  };
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(tank(1, "", "")).ok());
+  plc.run(3);
+  ASSERT_TRUE(plc.change(tank(2, "extra : INT;", "")).ok());
+  plc.run(3);
+  ASSERT_EQ(plc.get("Main.t.seen"), "2");
+  plc.behind_job = [&] {  // after that of the undo no boundary comes, so no cycle is waited for
+    if (plc.controller().start_pending()) {
+      plc.at_boundary = [] { return vm::Boundary::Outcome::kTimeout; };
+    }
+  };
+  ASSERT_TRUE(plc.undo().ok());
+  plc.behind_job = {};
+  plc.at_boundary = {};
+  ASSERT_TRUE(plc.controller().start_pending());
+  ASSERT_EQ(plc.get("Main.t.seen"), "2");
+  const uint64_t cycles = plc.controller().cycles();
+  ASSERT_TRUE(plc.change(tank(3, "", "more : INT;")).ok());
+  EXPECT_EQ(plc.get("Main.t.seen"), "21") << "by the version that came back";
+  EXPECT_GT(plc.controller().cycles(), cycles);
+}
+
 }  // namespace
 }  // namespace stvm

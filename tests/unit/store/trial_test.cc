@@ -3,6 +3,7 @@
 
 #include "tests/unit/store/plc.h"
 #include "tests/unit/store/sim_storage.h"
+#include "tools/stvm/fate_message.h"
 
 namespace stvm {
 namespace {
@@ -73,6 +74,49 @@ TEST(Trial, X7_ATaskThatStopsAloneUndoesItToo) {
   EXPECT_FALSE(rig.plc.controller().faulted());
   rig.plc.service().keep_up();
   expect_undone(rig, "a trap on trial");
+}
+
+// A block on trial whose FB_Exit traps whatever happens must not keep it there.
+std::string with_bad_exit(const std::string& body, const std::string& policy = {}) {
+  return "FUNCTION_BLOCK Bad VAR n, zero : INT; END_VAR METHOD FB_Exit : BOOL VAR_INPUT "
+         "bInCopyCode : BOOL; END_VAR n := 1 / zero; END_METHOD END_FUNCTION_BLOCK\n" +
+         program("b : Bad; k : DINT;", body, policy);
+}
+
+TEST(Trial, X7_AnFbExitThatTrapsKeepsNothingOnTrial) {
+  Rig rig(kStopTask);
+  const std::string body = "k := k + 1; IF k >= 4 THEN z := 1 / z; END_IF";
+  ASSERT_TRUE(rig.plc.change(with_bad_exit(body, kStopTask)).ok());
+  rig.plc.run(6);
+  rig.plc.service().keep_up();
+  expect_undone(rig, "edit E1, without FB_Exit of Main.b: a trap on trial");
+}
+
+TEST(Trial, X4_case34_AnUndoWithoutFbExitIsAskedForAndNoted) {
+  Rig rig;
+  ASSERT_TRUE(rig.plc.change(with_bad_exit("")).ok());
+  rig.plc.run(3);
+  EXPECT_EQ(rig.plc.undo().error().refusal, base::Refusal::kExitFailed);
+  EXPECT_EQ(rig.plc.status().change, "trial");
+  // The report says what will not run, and asking for it does nothing.
+  vm::Request fates{.command = vm::Command::kFates, .names = {vm::kWithoutExit}};
+  base::Result<base::Bytes> body = rig.plc.answer_to(fates);
+  ASSERT_TRUE(body.ok());
+  base::Result<FatePage> page = decode_fate_page(*body);
+  ASSERT_TRUE(page.ok());
+  ASSERT_FALSE(page->system.empty());
+  EXPECT_EQ(page->system[0].kind, "FB_Exit");
+  EXPECT_EQ(page->system[0].name, "Main.b");
+  EXPECT_EQ(rig.plc.status().change, "trial");
+  ASSERT_TRUE(rig.plc.ask({.command = vm::Command::kUndo, .names = {"E1", vm::kWithoutExit}}).ok());
+  expect_undone(rig, "edit E1, without FB_Exit of Main.b");
+  // After a power cut the version before boots, and what was left out is still noted.
+  Plc again(rig.disk);
+  ASSERT_TRUE(again.boot().ok());
+  EXPECT_EQ(again.get("Main.b.n"), "no Main.b.n");
+  std::string noted;
+  for (const auto& entry : again.store().history()) noted += entry.text + "\n";
+  EXPECT_NE(noted.find("edit E1, without FB_Exit of Main.b\n"), std::string::npos) << noted;
 }
 
 // The last scan of the first ones, and the one behind it.
