@@ -98,9 +98,9 @@ bool Migrations::read_other(ir::Migration& row, const Attribute& rule) {
   const std::string& name = types[row.type].name;
   row.from = rule.from;
   ir::TypeId other;
-  if (const PouInfo* found = sema_.find_pou(rule.from); found != nullptr) {
+  if (const PouInfo* found = sema_.declared.find_pou(rule.from); found != nullptr) {
     other = found->self;
-  } else if (const std::optional<TypeUse> type = sema_.find_type(rule.from)) {
+  } else if (const std::optional<TypeUse> type = sema_.ask<Types>().find_type(rule.from)) {
     other = type->type;
   }
   if (other.valid()) row.from = types[other].name;
