@@ -69,6 +69,9 @@ class Resident {
   bool lower_again(ir::PouId pou);
   // Every POU's callees.
   std::vector<std::vector<ir::PouId>> callees() const;
+  // What is kept of the sources, for questions (questions/questions.h), also where they have
+  // mistakes; null: nothing. Edits that could not be followed are not in it.
+  Sema* sema() { return sema_.get(); }
   // Bodies that were checked and lowered since this was made.
   uint64_t lowered() const { return lowered_; }
 

@@ -57,6 +57,8 @@ class IncrementalBuild {
   void continue_from(std::shared_ptr<const ir::Image> base) { next_base_ = std::move(base); }
   // The tests of the last good build, with CompileOptions::tests.
   const std::vector<frontend::TestCase>& test_cases() const { return kept_->frontend.test_cases(); }
+  // The front end of the last good build; null: there was none.
+  frontend::Resident* frontend() { return kept_ == nullptr ? nullptr : &kept_->frontend; }
   const Counts& counts() const { return counts_; }
 
  private:

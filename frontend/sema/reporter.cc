@@ -58,6 +58,7 @@ base::SourceSpan Reporter::declared_at(const PouScope& scope, DiagnosticCode cod
 
 void Reporter::error(const PouScope& scope, DiagnosticCode code, base::SourceSpan span,
                      std::string text, Fix fix) {
+  if (silenced_ != 0) return;
   const PouDecl* within = scope.pou == nullptr ? nullptr : scope.pou->decl;
   if (within != nullptr && scope.pou->owner != kNoPou) {
     within = declared_.pous[scope.pou->owner].decl;
@@ -74,7 +75,7 @@ void Reporter::error(const PouScope& scope, DiagnosticCode code, base::SourceSpa
 
 void Reporter::warning(DiagnosticCode code, base::SourceSpan span, std::string text,
                        std::string fix) {
-  if (library_.holds(span)) return;
+  if (silenced_ != 0 || library_.holds(span)) return;
   diagnostics_.add(code, span, std::move(text), std::move(fix));
 }
 

@@ -40,6 +40,17 @@ class Reporter {
   bool has_errors() const { return diagnostics_.has_errors(); }
   // Are there errors that are no warnings made errors?
   bool has_hard_errors() const { return diagnostics_.has_hard_errors(); }
+  // While it lives nothing is said: who asks again what was answered has heard the messages.
+  class Silence {
+   public:
+    explicit Silence(Reporter& reporter) : reporter_(reporter) { ++reporter_.silenced_; }
+    ~Silence() { --reporter_.silenced_; }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+
+   private:
+    Reporter& reporter_;
+  };
   // What was said is to be said again.
   void forget() { follow_ups_.forget(); }
 
@@ -54,6 +65,7 @@ class Reporter {
   const Library& library_;
   base::Diagnostics& diagnostics_;
   FollowUps follow_ups_;
+  uint32_t silenced_ = 0;
 };
 
 }  // namespace frontend

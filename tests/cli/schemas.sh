@@ -74,6 +74,8 @@ answers stc-test-list 0 stc test plant --list
 answers stc-fmt 1 stc fmt --check plant
 answers stc-source 0 stc source plant.img
 answers stc-source 0 stc source plant.img -o back
+answers stc-xref 0 stc xref plant
+answers stc-xref 0 stc xref plant --at plant/main.st:1:57
 answers refused 7 stc check missing.st
 cp plant/main.st old.st
 mkdir next

@@ -19,6 +19,7 @@ extern const Entry kExport;
 extern const Entry kDraw;
 extern const Entry kDump;
 extern const Entry kSource;
+extern const Entry kXref;
 extern const Entry kExplain;
 
 }  // namespace stc

@@ -33,10 +33,10 @@ std::vector<std::string> adapters() {
 int main(int argc, char** argv) {
   tools::keep_freed_memory();
   stc::limit_memory();
-  const tools::Entry* const entries[] = {
-      &stc::kCheck,  &stc::kBuild,  &stc::kTest, &stc::kFormat, &stc::kDiff,   &stc::kPackage,
-      &stc::kFleet,  &stc::kImport, &stc::kExport, &stc::kDraw, &stc::kDump, &stc::kSource,
-      &stc::kExplain};
+  const tools::Entry* const entries[] = {&stc::kCheck,  &stc::kBuild,   &stc::kTest,  &stc::kFormat,
+                                         &stc::kDiff,   &stc::kPackage, &stc::kFleet, &stc::kImport,
+                                         &stc::kExport, &stc::kDraw,    &stc::kDump,  &stc::kSource,
+                                         &stc::kXref,   &stc::kExplain};
   const tools::Tool tool{"stc",
                          "Compiles IEC 61131-3 programs to images for stvm.",
                          entries,

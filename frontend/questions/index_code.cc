@@ -1,0 +1,142 @@
+// What names in code mean.
+#include "frontend/questions/indexer.h"
+#include "frontend/sema/variables.h"
+
+namespace frontend::questions {
+
+void Indexer::visit(const Expr& expr, ExprId id, bool written) {
+  const Role role = written ? Role::kWritten : Role::kRead;
+  switch (expr.kind) {
+    case ExprKind::kName:
+      add(expr.name.span, plain_name(expr, known(id)), role);
+      return;
+    case ExprKind::kMember:
+      add(expr.name.span, member(expr, known(id)), role);
+      return;
+    case ExprKind::kQualified: {
+      const Note& note = known(id);
+      const Name type = tree_.name(expr.number);
+      add(type.span, declaration_named(sema_.namespaces.find(NameSort::kDeclaration, type)),
+          Role::kRead);
+      if (note.type.valid()) {
+        add(expr.name.span, enumerator_symbol(note.type, expr.name.text), Role::kRead);
+      }
+      return;
+    }
+    case ExprKind::kCall:
+      call_arguments(expr);
+      return;
+    default:
+      return;
+  }
+}
+
+std::optional<Symbol> Indexer::declaration_named(std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  if (const PouInfo* pou = sema_.declared.find_pou(name)) return pou_symbol(*pou);
+  if (auto type = type_symbol(name)) return type;
+  const auto row = sema_.library.functions.find(name);
+  if (row == sema_.library.functions.end()) return std::nullopt;
+  Symbol symbol;
+  symbol.kind = SymbolKind::kStandardFunction;
+  symbol.name = std::string(row->second->name);
+  symbol.row = row->second;
+  return symbol;
+}
+
+// A variable, method, action or property of the block or its bases.
+std::optional<Symbol> Indexer::in_block(uint32_t block, const Name& name) {
+  if (block == kNoPou) return std::nullopt;
+  for (uint32_t at = block; at != kNoPou; at = sema_.declared.pous[at].base) {
+    const auto& names = sema_.declared.pous[at].names;
+    if (const auto found = names.find(name.text); found != names.end()) {
+      return variable_symbol(found->second);
+    }
+  }
+  const Objects::Found found = sema_.objects.find_code(block, name.text);
+  if (found.owner == kNoPou) return std::nullopt;
+  const MemberCode& code = found.code;
+  const uint32_t number = code.method != kNoPou   ? code.method
+                          : code.getter != kNoPou ? code.getter
+                                                  : code.setter;
+  return pou_symbol(sema_.declared.pous[number]);
+}
+
+std::optional<Symbol> Indexer::plain_name(const Expr& expr, const Note& note) {
+  if (note.variable.valid()) return variable_symbol(note.variable);
+  if (const VarId id = Variables(sema_, scope_).find_variable(expr); id.valid()) {
+    return variable_symbol(id);
+  }
+  if (expr.global) return std::nullopt;
+  if (auto own = in_block(sema_.declared.block_of(scope_), expr.name)) return own;
+  const bool literal = note.type.valid() && note.constant;
+  if (literal) {
+    if (auto found = enumerator_symbol(note.type, expr.name.text)) return found;
+  }
+  return declaration_named(sema_.namespaces.find(NameSort::kDeclaration, expr));
+}
+
+// The block or interface whose members stand after the dot.
+uint32_t Indexer::block_before_dot(ExprId operand) {
+  const Expr& expr = tree_[operand];
+  const uint32_t own = sema_.declared.block_of(scope_);
+  if (sema_.objects.is_own(expr)) {
+    const bool super = sema_.objects.is_super(expr);
+    return own == kNoPou || !super ? own : sema_.declared.pous[own].base;
+  }
+  ir::TypeId type = known(operand).type;
+  if (!type.valid()) return kNoPou;
+  if (is_interface(sema_.program.types, type)) type = sema_.program.types[type].base;
+  const PouInfo* pou = sema_.declared.pou_of(type);
+  return pou == nullptr ? kNoPou : pou->number;
+}
+
+std::optional<Symbol> Indexer::member(const Expr& expr, const Note& note) {
+  if (note.variable.valid()) return variable_symbol(note.variable);  // of a list, or a namespace
+  if (auto found = in_block(block_before_dot(expr.operand), expr.name)) return found;
+  const ir::TypeId before = known(expr.operand).type;
+  if (before.valid() && ir::is_structure(sema_.program.types[before].kind)) {
+    return field_symbol(before, expr.name);
+  }
+  if (note.type.valid() && note.constant) {
+    if (auto found = enumerator_symbol(note.type, expr.name.text)) return found;
+  }
+  if (before.valid()) return variable_symbol(Variables(sema_, scope_).find_variable(expr.name));
+  if (const VarId global = sema_.namespaces.find_global(expr); global.valid()) {
+    return variable_symbol(global);
+  }
+  return declaration_named(sema_.namespaces.find(NameSort::kDeclaration, expr));
+}
+
+// What is called, by the head of the call: a POU with parameters.
+const PouInfo* Indexer::callee(const Expr& head) {
+  std::optional<Symbol> symbol;
+  if (head.kind == ExprKind::kName) symbol = plain_name(head, Note());
+  if (head.kind == ExprKind::kMember) symbol = member(head, Note());
+  if (symbol && symbol->pou != kNoPou) return &sema_.declared.pous[symbol->pou];
+  if (!symbol && !sema_.objects.is_own(head)) return nullptr;
+  if (symbol) return symbol->type.valid() ? sema_.declared.pou_of(symbol->type) : nullptr;
+  const uint32_t own = sema_.declared.block_of(scope_);
+  const bool super = own != kNoPou && sema_.objects.is_super(head);
+  const uint32_t number = super ? sema_.declared.pous[own].base : own;
+  return number == kNoPou ? nullptr : &sema_.declared.pous[number];
+}
+
+void Indexer::call_arguments(const Expr& call) {
+  if (const Name box = tree_.name(call.number); !box.empty()) {
+    add(box.span, declaration_named(sema_.namespaces.find(NameSort::kDeclaration, box)),
+        Role::kRead);
+  }
+  const Note& head = known(call.operand);
+  const PouInfo* pou = head.type.valid() ? sema_.declared.pou_of(head.type) : nullptr;
+  if (pou == nullptr) pou = callee(tree_[call.operand]);
+  if (pou == nullptr) return;
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    const Arg& arg = tree_.args[call.list.first + i];
+    if (arg.name.empty()) continue;
+    add(arg.name.span, variable_symbol(sema_.objects.find_parameter(*pou, arg.name.text)),
+        arg.output ? Role::kRead : Role::kWritten);
+  }
+}
+
+}  // namespace frontend::questions

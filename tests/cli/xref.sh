@@ -1,0 +1,55 @@
+#!/bin/sh
+# stc xref: what names mean, where they are declared and who uses them, in every language.
+. "$(dirname "$0")/lib.sh"
+
+mkdir plant
+cat >plant/blocks.st <<'ST'
+// Counts what passes.
+FUNCTION_BLOCK Counter
+VAR_INPUT pulse : BOOL; END_VAR
+VAR_OUTPUT total : INT; END_VAR
+VAR seen : BOOL; END_VAR
+LADDER
+  |--[P pulse ]--( seen )--|
+END_LADDER
+END_FUNCTION_BLOCK
+ST
+cat >plant/main.st <<'ST'
+PROGRAM Main
+VAR c : Counter; END_VAR
+c(pulse := c.total < 5);
+END_PROGRAM
+ST
+
+# By name: the declaration's comment, and the uses in all files.
+expect 0 stc xref plant --name counter
+cat >want <<'END'
+FUNCTION_BLOCK Counter(pulse : BOOL, VAR_OUTPUT total : INT)
+  Counts what passes.
+plant/blocks.st:2:16: declared
+plant/main.st:2:9: read
+END
+cmp -s out want || fail "other text: $(cat out)"
+
+# By place: a name, and the type of the expression there.
+expect 0 stc xref plant --at plant/blocks.st:7:11
+grep -q '^VAR_INPUT Counter.pulse : BOOL$' out || fail "a contact is not found: $(cat out)"
+grep -q '^plant/main.st:3:3: written$' out || fail "the argument is no use: $(cat out)"
+expect 0 stc xref plant --at plant/main.st:3:14
+grep -q '^plant/main.st:3:12: expression of type INT$' out || fail "no type: $(cat out)"
+
+# Everything; sources with mistakes are answered for, and the mistakes are said.
+expect 0 stc xref plant
+[ "$(grep -c declared out)" -eq 6 ] || fail "not six declarations: $(cat out)"
+sed 's/< 5/< five/' plant/main.st >bad.st
+expect 0 stc xref bad.st plant/blocks.st --name Main.c
+grep -q 'five' err || fail "the mistake is not said"
+grep -q '^bad.st:3:12: read$' out || fail "no answer beside a mistake: $(cat out)"
+
+# What is not there.
+expect 2 stc xref plant --name Countr
+grep -q 'did you mean `Counter`' err || fail "no suggestion: $(cat err)"
+expect 2 stc xref plant --at plant/main.st:99:1
+grep -q 'no file of the project has the place' err || fail "$(cat err)"
+expect 2 stc xref plant --at plant/main.st
+expect 2 stc xref plant --at plant/main.st:3:1 --name c
