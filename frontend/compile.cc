@@ -16,6 +16,7 @@
 #include "frontend/parse/parse.h"
 #include "frontend/sema/common_uses.h"
 #include "frontend/sema/migrations.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
@@ -93,12 +94,12 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
 }
 
 void declare_all(Sema& sema) {
-  sema.ask<Interfaces>().report_not_supported();
-  sema.ask<Collection>().collect();
-  sema.ask<Interfaces>().resolve_declarations();
+  Interfaces(sema).report_not_supported();
+  Collection(sema).collect();
+  Interfaces(sema).resolve_declarations();
   Migrations(sema).collect();
-  sema.ask<Configuration>().configure();
-  sema.objects.add_start();
+  Configuration(sema).configure();
+  Objects(sema).add_start();
 }
 
 void lower_body(Sema& sema, uint32_t pou) {
@@ -106,19 +107,19 @@ void lower_body(Sema& sema, uint32_t pou) {
 }
 
 void check_uses(Sema& sema) {
-  sema.objects.check_recursion();
+  Objects(sema).check_recursion();
   CommonUses(sema).check_output_tasks();
-  report_unused(sema);
+  report_unused(Phase(sema));
 }
 
 void check_whole(Sema& sema) {
-  sema.ask<Interfaces>().finish_programs();
+  Interfaces(sema).finish_programs();
   Migrations(sema).check_code();
-  sema.objects.check_recursion();
+  Objects(sema).check_recursion();
   sema.program.overrides = ir::find_overrides(sema.program);
   CommonUses(sema).check_output_tasks();
   SharedAddresses(sema).check();
-  report_unused(sema);
+  report_unused(Phase(sema));
 }
 
 namespace {

@@ -11,7 +11,7 @@ constexpr uint32_t kKept = 0xffffffffu;
 // May a call that is lowered later need this body again, for other types of its parameters?
 bool may_have_instances(Sema& sema, const PouInfo& info) {
   return info.open || std::any_of(info.variables.begin(), info.variables.end(), [&](VarId id) {
-           const Variable& variable = sema.resolve(id);
+           const Variable& variable = Phase(sema).resolve(id);
            return variable.section == VarSection::kInOut &&
                   (!variable.type.valid() || is_string(sema.program.types, variable.type));
          });

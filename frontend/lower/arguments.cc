@@ -1,6 +1,7 @@
 // Arguments of POUs: which goes to which parameter.
 #include "frontend/lower/call.h"
 #include "frontend/sema/calls.h"
+#include "frontend/sema/objects.h"
 
 namespace frontend {
 
@@ -17,8 +18,8 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
   for (uint32_t i = positional; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
     if (arg.name.empty()) {
-      sema_.error(DiagnosticCode::kMixedArguments, arg.span,
-                  "an argument without a name after one with a name", "name it too");
+      error(DiagnosticCode::kMixedArguments, arg.span,
+            "an argument without a name after one with a name", "name it too");
       return false;
     }
     good = bind_named(arg, callee, bindings) && good;
@@ -27,37 +28,36 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
 }
 
 bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
-  if (sema_.ask<Calls>().is_enable(arg, &callee)) return true;
-  const VarId found = sema_.objects.find_parameter(callee, arg.name.text);
+  if (ask<Calls>().is_enable(arg, &callee)) return true;
+  const VarId found = ask<Objects>().find_parameter(callee, arg.name.text);
   const bool known = found.valid() && found != callee.result;
-  const Variable* variable = known ? &sema_.resolve(found) : nullptr;
+  const Variable* variable = known ? &resolve(found) : nullptr;
   bool parameter = variable != nullptr && (variable->section == VarSection::kInput ||
                                            variable->section == VarSection::kOutput ||
                                            variable->section == VarSection::kInOut);
   if (!parameter) {
     NearestName nearest(arg.name.text);
-    for (VarId id : sema_.objects.variables_of(callee)) {
-      VarSection section = sema_.resolve(id).section;
+    for (VarId id : ask<Objects>().variables_of(callee)) {
+      VarSection section = resolve(id).section;
       if (section == VarSection::kInput || section == VarSection::kOutput ||
           section == VarSection::kInOut) {
-        nearest.offer(sema_.resolve(id).name.text);
+        nearest.offer(resolve(id).name.text);
       }
     }
-    sema_.error(DiagnosticCode::kUnknownParameter, arg.name.span,
-                quoted_name(callee.decl->name) + " has no parameter " + quoted_name(arg.name),
-                nearest.fix());
+    error(DiagnosticCode::kUnknownParameter, arg.name.span,
+          quoted_name(callee.decl->name) + " has no parameter " + quoted_name(arg.name),
+          nearest.fix());
     return false;
   }
   for (const Binding& other : bindings) {
     if (other.variable != found) continue;
-    sema_.error(DiagnosticCode::kDuplicateArgument, arg.span,
-                quoted_name(arg.name) + " is given twice");
+    error(DiagnosticCode::kDuplicateArgument, arg.span, quoted_name(arg.name) + " is given twice");
     return false;
   }
   if (arg.output != (variable->section == VarSection::kOutput)) {
-    sema_.error(DiagnosticCode::kWrongDirection, arg.span,
-                quoted_name(arg.name) + (arg.output ? " is no output" : " is an output"),
-                arg.output ? "write `:=`" : "write `=>`");
+    error(DiagnosticCode::kWrongDirection, arg.span,
+          quoted_name(arg.name) + (arg.output ? " is no output" : " is an output"),
+          arg.output ? "write `:=`" : "write `=>`");
     return false;
   }
   if (!arg.value.valid()) return true;  // `name :=` and `name =>` leave the parameter open
@@ -70,17 +70,17 @@ bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& call
                            std::vector<Binding>& bindings) {
   std::vector<VarId> parameters;
   for (bool outputs : {false, true}) {
-    for (VarId id : sema_.objects.variables_of(callee)) {
+    for (VarId id : ask<Objects>().variables_of(callee)) {
       if (id == callee.result) continue;
-      VarSection section = sema_.resolve(id).section;
+      VarSection section = resolve(id).section;
       bool input = section == VarSection::kInput || section == VarSection::kInOut;
       if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
     }
   }
   if (count > parameters.size()) {
-    sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
-                quoted_name(callee.decl->name) + " has " + std::to_string(parameters.size()) +
-                    " parameters, but " + std::to_string(count) + " arguments are given");
+    error(DiagnosticCode::kWrongArgumentCount, call.span,
+          quoted_name(callee.decl->name) + " has " + std::to_string(parameters.size()) +
+              " parameters, but " + std::to_string(count) + " arguments are given");
     return false;
   }
   for (uint32_t i = 0; i < count; ++i) {
@@ -95,8 +95,8 @@ bool Body::check_given(const Expr& call, const PouInfo& callee,
                        const std::vector<Binding>& bindings) {
   if (call.list.count == 0 || !tree_.args[call.list.first].name.empty()) return true;
   std::string missing;
-  for (VarId id : sema_.objects.variables_of(callee)) {
-    const Variable& variable = sema_.resolve(id);
+  for (VarId id : ask<Objects>().variables_of(callee)) {
+    const Variable& variable = resolve(id);
     if (variable.section != VarSection::kInput) continue;
     if (variable.decl != nullptr && variable.decl->init.valid()) continue;
     bool given = false;
@@ -104,10 +104,10 @@ bool Body::check_given(const Expr& call, const PouInfo& callee,
     if (!given) missing += (missing.empty() ? "" : ", ") + quoted_name(variable.name);
   }
   if (missing.empty()) return true;
-  sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
-              "this call of " + quoted_name(callee.decl->name) + " leaves out " + missing,
-              "give every input, or name those that are given: `" +
-                  std::string(callee.decl->name.text) + "(name := value)`");
+  error(DiagnosticCode::kWrongArgumentCount, call.span,
+        "this call of " + quoted_name(callee.decl->name) + " leaves out " + missing,
+        "give every input, or name those that are given: `" + std::string(callee.decl->name.text) +
+            "(name := value)`");
   return false;
 }
 
@@ -115,16 +115,16 @@ bool Body::check_given(const Expr& call, const PouInfo& callee,
 bool Body::check_in_outs(const Expr& call, const PouInfo& callee,
                          const std::vector<Binding>& bindings) {
   bool good = true;
-  for (VarId id : sema_.objects.variables_of(callee)) {
-    const Variable& variable = sema_.resolve(id);
+  for (VarId id : ask<Objects>().variables_of(callee)) {
+    const Variable& variable = resolve(id);
     if (variable.section != VarSection::kInOut) continue;
     bool given = false;
     for (const Binding& binding : bindings) given = given || binding.variable == id;
     if (given) continue;
-    sema_.error(DiagnosticCode::kMissingInOut, call.span,
-                "in-out " + quoted_name(variable.name) + " of " + quoted_name(callee.decl->name) +
-                    " is not connected",
-                "add `" + std::string(variable.name.text) + " := variable`");
+    error(DiagnosticCode::kMissingInOut, call.span,
+          "in-out " + quoted_name(variable.name) + " of " + quoted_name(callee.decl->name) +
+              " is not connected",
+          "add `" + std::string(variable.name.text) + " := variable`");
     good = false;
   }
   return good;

@@ -14,7 +14,7 @@ void Body::assign(const Stmt& stmt) {
   if (stmt.assign == AssignOp::kSet || stmt.assign == AssignOp::kReset) {
     if (!stmt.instruction) {
       allow_set_or_reset(stmt.span);
-    } else if (ir::TypeId type = sema_.infer(stmt.target).type;
+    } else if (ir::TypeId type = infer(stmt.target).type;
                stmt.from.valid() && type.valid() && types().is_instance(type)) {
       Stmt call = stmt;
       call.value = stmt.from;
@@ -32,7 +32,7 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
   bool list = source.kind == ExprKind::kArrayInit || source.kind == ExprKind::kStructInit;
   auto to = target(left);
   if (!to) {
-    if (!list) sema_.infer(right);  // its errors count too
+    if (!list) infer(right);  // its errors count too
     return std::nullopt;
   }
   if (!types().is_scalar(to->type)) {
@@ -48,8 +48,7 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
 }
 
 void Body::allow_set_or_reset(base::SourceSpan span) {
-  sema_.allow_extension("an assignment with S= or R=", span,
-                        "write IF condition THEN x := TRUE; END_IF");
+  allow_extension("an assignment with S= or R=", span, "write IF condition THEN x := TRUE; END_IF");
 }
 
 // The value of `x S= y` is y: in `a S= b R= y` both follow the same y.
@@ -59,10 +58,10 @@ ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::Sou
   ir::ValueId condition = value(right, boolean);
   if (!to) return condition;
   if (!traits_of(types(), to->type).boolean) {
-    sema_.error(DiagnosticCode::kTypeMismatch, tree_[left].span,
-                "a `" + sema_.report.type_text(to->type) + "` cannot be " +
-                    (op == AssignOp::kSet ? "set" : "reset"),
-                "only BOOL variables can be");
+    error(DiagnosticCode::kTypeMismatch, tree_[left].span,
+          "a `" + sema_.report.type_text(to->type) + "` cannot be " +
+              (op == AssignOp::kSet ? "set" : "reset"),
+          "only BOOL variables can be");
     return condition;
   }
   count_power(condition, left, span.begin);
@@ -87,39 +86,39 @@ ir::ValueId Body::emit_assignment(const Expr& expr) {
     return attempt(expr.operand, expr.right, expr.span).handle;
   }
   auto to = assign_value(expr.operand, expr.right, expr.span);
-  return to ? load(*to) : zero(sema_.infer(expr.operand).type);
+  return to ? load(*to) : zero(infer(expr.operand).type);
 }
 
 ir::Place Body::assignment_place(ExprId id, const Expr& expr) {
   auto to = assign_value(expr.operand, expr.right, expr.span);
-  return to ? to->place : temporary_place(sema_.infer(id).type);
+  return to ? to->place : temporary_place(infer(id).type);
 }
 
 void Body::assign_aggregate(const Target& to, ExprId value) {
   const Expr& expr = tree_[value];
   if (types().is_instance(to.type)) {
-    sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                "instances of `" + sema_.report.type_text(to.type) + "` cannot be assigned",
-                "copy the variables that matter one by one");
+    error(DiagnosticCode::kNotAssignable, expr.span,
+          "instances of `" + sema_.report.type_text(to.type) + "` cannot be assigned",
+          "copy the variables that matter one by one");
     return;
   }
   if (expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit) {
-    ir::ConstId init = sema_.ask<Constants>().initial_value(value, to.type, {}, Known::kByCall);
+    ir::ConstId init = ask<Constants>().initial_value(value, to.type, {}, Known::kByCall);
     if (init.valid()) build_.init(to.place, init);
     return;
   }
-  const Note& note = sema_.infer(value);
+  const Note& note = infer(value);
   if (!note.type.valid()) return;
   bool strings = is_string(types(), to.type) && types()[note.type].kind == types()[to.type].kind;
   if (!strings && note.type != to.type) {
-    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
-                "`" + sema_.report.type_text(note.type) + "` does not go with `" +
-                    sema_.report.type_text(to.type) + "`");
+    error(DiagnosticCode::kTypeMismatch, expr.span,
+          "`" + sema_.report.type_text(note.type) + "` does not go with `" +
+              sema_.report.type_text(to.type) + "`");
     return;
   }
   if (strings && note.constant) {  // says so when the text is too long
-    auto text = sema_.ask<Constants>().fold(value, to.type);
-    if (!text || !sema_.ask<Constants>().fit_text(*text, to.type, expr.span)) return;
+    auto text = ask<Constants>().fold(value, to.type);
+    if (!text || !ask<Constants>().fit_text(*text, to.type, expr.span)) return;
   }
   ir::Place from = place(value);
   build_.copy(to.place, from);

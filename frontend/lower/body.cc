@@ -9,11 +9,11 @@
 namespace frontend {
 
 Body::Body(Sema& sema, uint32_t pou)
-    : Body(sema, sema.declared.pous[pou], pou,
+    : Body(sema, PouScope(sema.declared.pous[pou]), sema.declared.pous[pou], pou,
            sema.program.pous[sema.declared.pous[pou].id.index]) {}
 
-Body::Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou)
-    : sema_(sema),
+Body::Body(Sema& sema, const PouScope& scope, PouInfo& info, uint32_t number, ir::Pou pou)
+    : Phase(sema, scope),
       tree_(sema.tree),
       info_(info),
       pou_number_(number),
@@ -21,7 +21,6 @@ Body::Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou)
       build_(out_) {}
 
 void Body::run() {
-  Sema::Within scope(sema_, pou_number_);
   const PouDecl& decl = *info_.decl;
   base::SourceLocation head = sema_.sources.locate(decl.span.begin);
   line_file_ = sema_.sources.file_of(decl.span.begin);
@@ -124,14 +123,14 @@ ir::ValueId Body::zero(ir::TypeId type) {
 // Everything that the caller does not write starts anew at each call.
 void Body::initialise_locals() {
   for (uint32_t i = 0; i < info_.locals.size(); ++i) {
-    const Variable& variable = sema_.resolve(info_.locals[i]);
+    const Variable& variable = resolve(info_.locals[i]);
     bool written_by_caller =
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
     if (!written_by_caller && variable.type.valid()) initialise(local_place(i), variable);
   }
   if (!info_.shares_temporaries) return;
   for (VarId id : info_.variables) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = resolve(id);
     bool temporary = variable.section == VarSection::kTemp && variable.type.valid();
     if (temporary) initialise(member_variable_place(variable), variable);
   }

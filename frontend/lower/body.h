@@ -15,7 +15,7 @@
 #include "frontend/lower/builder.h"
 #include "frontend/lower/handles.h"
 #include "frontend/lower/target.h"
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 #include "stdlib/native/natives.h"
 
 namespace frontend {
@@ -27,20 +27,21 @@ inline ir::Step step_to(ir::StepKind kind, uint32_t index = 0) {
   return step;
 }
 
-class Body {
+class Body : public Phase {
  public:
   Body(Sema& sema, uint32_t pou);
   void run();
 
   // The value of `expr`, which is known, by running its code here and now.
-  static std::optional<Constant> evaluate(Sema& sema, ExprId expr, ir::TypeId context);
+  static std::optional<Constant> evaluate(Sema& sema, const PouScope& scope, ExprId expr,
+                                          ir::TypeId context);
 
  private:
   friend class ChartBody;  // sequential function charts (chart.h)
   friend class StartCode;  // __START (start_code.h)
   friend class PoolCode;   // __NEW, __DELETE (pool_code.h)
 
-  Body(Sema& sema, PouInfo& info, uint32_t number, ir::Pou pou);
+  Body(Sema& sema, const PouScope& scope, PouInfo& info, uint32_t number, ir::Pou pou);
 
   // --- known values (constant_evaluation.cc)
   bool is_known(const Note& note) const {
@@ -372,7 +373,6 @@ class Body {
     size_t tries;
   };
 
-  Sema& sema_;
   const Tree& tree_;
   PouInfo& info_;
   uint32_t pou_number_;

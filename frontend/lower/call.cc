@@ -18,7 +18,7 @@ ir::Step member_step(uint32_t index) {
 
 // `keep`: a later argument calls something that might change this one's source.
 void Body::evaluate_input(Binding& binding, bool keep) {
-  const Variable& parameter = sema_.resolve(binding.variable);
+  const Variable& parameter = resolve(binding.variable);
   if (!parameter.type.valid()) return;
   ExprId id = binding.arg->value;
   if (types().is_scalar(parameter.type)) {
@@ -30,18 +30,18 @@ void Body::evaluate_input(Binding& binding, bool keep) {
     ir::Place list;
     list.base = ir::PlaceBase::kConst;
     list.base_type = list.type = parameter.type;
-    list.constant = sema_.ask<Constants>().initial_value(id, parameter.type, {}, Known::kByCall);
+    list.constant = ask<Constants>().initial_value(id, parameter.type, {}, Known::kByCall);
     if (list.constant.valid()) binding.place = list;
     return;
   }
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.type.valid()) return;
   bool strings =
       is_string(types(), parameter.type) && types()[note.type].kind == types()[parameter.type].kind;
   if (!strings && note.type != parameter.type) {
-    sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
-                quoted_name(parameter.name) + " is `" + sema_.report.type_text(parameter.type) +
-                    "`, the argument is `" + sema_.report.type_text(note.type) + "`");
+    error(DiagnosticCode::kWrongArgument, binding.arg->span,
+          quoted_name(parameter.name) + " is `" + sema_.report.type_text(parameter.type) +
+              "`, the argument is `" + sema_.report.type_text(note.type) + "`");
     return;
   }
   binding.place = place(id);
@@ -56,7 +56,7 @@ bool Body::evaluate_read_only(Binding& binding) {
   Binding given = binding;
   evaluate_input(given, false);
   if (!given.place && !given.value.valid()) return false;
-  const ir::TypeId type = sema_.resolve(binding.variable).type;
+  const ir::TypeId type = resolve(binding.variable).type;
   const ir::Place read = temporary_place(type);
   if (given.place) {
     build_.copy(read, *given.place);
@@ -68,9 +68,9 @@ bool Body::evaluate_read_only(Binding& binding) {
 }
 
 bool Body::evaluate_in_out(Binding& binding) {
-  const Variable& parameter = sema_.resolve(binding.variable);
+  const Variable& parameter = resolve(binding.variable);
   ExprId id = binding.arg->value;
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.type.valid() || !parameter.type.valid()) return false;
   if (parameter.by_reference) {
     binding.value = reference_value(id, parameter.type);
@@ -81,16 +81,16 @@ bool Body::evaluate_in_out(Binding& binding) {
   if (parameter.constant && copied) return evaluate_read_only(binding);
   if (!parameter.constant && !check_writable(id)) return false;
   if (note.bit_size != 0 || is_character(id)) {
-    sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
-                quoted_name(parameter.name) + " cannot be bound to a part of a variable",
-                "copy the part into a variable of its own and pass that");
+    error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
+          quoted_name(parameter.name) + " cannot be bound to a part of a variable",
+          "copy the part into a variable of its own and pass that");
     return false;
   }
   if (note.type != parameter.type) {
-    sema_.error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
-                quoted_name(parameter.name) + " is `" + sema_.report.type_text(parameter.type) +
-                    "`, the argument is `" + sema_.report.type_text(note.type) + "`",
-                "pass a variable of exactly this type");
+    error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
+          quoted_name(parameter.name) + " is `" + sema_.report.type_text(parameter.type) +
+              "`, the argument is `" + sema_.report.type_text(note.type) + "`",
+          "pass a variable of exactly this type");
     return false;
   }
   binding.value = build_.address(place(id));
@@ -101,13 +101,13 @@ bool Body::evaluate_in_out(Binding& binding) {
 bool Body::may_call(ExprId id) {
   ExprKind kind = tree_[id].kind;
   bool list = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
-  return !list && sema_.infer(id).calls;
+  return !list && infer(id).calls;
 }
 
 void Body::evaluate_arguments(const Expr& call, std::vector<Binding>& bindings) {
   for (size_t i = 0; i < bindings.size(); ++i) {
     Binding& binding = bindings[i];
-    VarSection section = sema_.resolve(binding.variable).section;
+    VarSection section = resolve(binding.variable).section;
     if (section == VarSection::kInOut) {
       evaluate_in_out(binding);
     } else if (section == VarSection::kOutput) {
@@ -124,7 +124,7 @@ void Body::evaluate_arguments(const Expr& call, std::vector<Binding>& bindings) 
 }
 
 void Body::pass_input(const Binding& binding, const ir::Place& parameter) {
-  const Variable& variable = sema_.resolve(binding.variable);
+  const Variable& variable = resolve(binding.variable);
   if (variable.section == VarSection::kInOut && !variable.by_reference) {
     if (binding.value.valid()) build_.store(parameter, ir::Scalar::kAddr, binding.value);
   } else if (binding.place) {
@@ -138,7 +138,7 @@ void Body::pass_input(const Binding& binding, const ir::Place& parameter) {
 void Body::take_outputs(std::vector<Binding>& bindings,
                         const std::function<ir::Place(const Variable&)>& place_of) {
   for (Binding& binding : bindings) {
-    const Variable& variable = sema_.resolve(binding.variable);
+    const Variable& variable = resolve(binding.variable);
     if (variable.section != VarSection::kOutput || !binding.target || !variable.type.valid()) {
       continue;
     }
@@ -152,21 +152,21 @@ void Body::take_outputs(std::vector<Binding>& bindings,
       build_.copy(binding.target->place, place_of(variable));
       continue;
     }
-    sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
-                quoted_name(variable.name) + " is `" + sema_.report.type_text(variable.type) +
-                    "`, its target is `" + sema_.report.type_text(binding.target->type) + "`");
+    error(DiagnosticCode::kWrongArgument, binding.arg->span,
+          quoted_name(variable.name) + " is `" + sema_.report.type_text(variable.type) +
+              "`, its target is `" + sema_.report.type_text(binding.target->type) + "`");
   }
   for (Binding& binding : bindings) {
-    const Variable& variable = sema_.resolve(binding.variable);
+    const Variable& variable = resolve(binding.variable);
     if (variable.section != VarSection::kOutput || !binding.target) continue;
     settle(*binding.target);
     if (!binding.value.valid()) continue;
     ir::ValueId out = binding.value;
     if (binding.arg->negated) out = build_.unary(ir::Op::kNot, scalar(variable.type), out);
     if (!types().is_scalar(binding.target->type)) {
-      sema_.error(DiagnosticCode::kWrongArgument, binding.arg->span,
-                  "the target of " + quoted_name(variable.name) + " is no `" +
-                      sema_.report.type_text(variable.type) + "`");
+      error(DiagnosticCode::kWrongArgument, binding.arg->span,
+            "the target of " + quoted_name(variable.name) + " is no `" +
+                sema_.report.type_text(variable.type) + "`");
       continue;
     }
     store(*binding.target, convert({out, variable.type}, binding.target->type, binding.arg->span));
@@ -190,7 +190,7 @@ void Body::call_instance(const Expr& call, uint32_t pou) {
   };
   evaluate_arguments(call, bindings);
   for (const Binding& binding : bindings) {
-    const Variable& variable = sema_.resolve(binding.variable);
+    const Variable& variable = resolve(binding.variable);
     if (variable.section != VarSection::kOutput) pass_input(binding, place_of(variable));
   }
   build_.call_instance(instance);
@@ -206,7 +206,7 @@ void Body::call_base(const Expr& call, uint32_t pou) {
   auto place_of = [&](const Variable& variable) { return member_variable_place(variable); };
   evaluate_arguments(call, bindings);
   for (const Binding& binding : bindings) {
-    const Variable& variable = sema_.resolve(binding.variable);
+    const Variable& variable = resolve(binding.variable);
     if (variable.section != VarSection::kOutput) pass_input(binding, place_of(variable));
   }
   build_.call_body(base.id);
@@ -215,7 +215,7 @@ void Body::call_base(const Expr& call, uint32_t pou) {
 
 void Body::pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings) {
   for (VarId id : callee.locals) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = resolve(id);
     if (variable.section != VarSection::kInput || !variable.type.valid()) continue;
     bool given = false;
     for (const Binding& binding : bindings) given = given || binding.variable == id;
@@ -257,7 +257,7 @@ Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wa
   }
   evaluate_arguments(call, bindings);
   for (const Binding& binding : bindings) {
-    const Variable& variable = sema_.resolve(binding.variable);
+    const Variable& variable = resolve(binding.variable);
     if (variable.section != VarSection::kOutput) {
       pass_input(binding, argument_place(function, variable));
     }
@@ -279,8 +279,8 @@ void Body::check_result_use(const Expr& call) {
   for (uint32_t i = 0; i < call.list.count; ++i) {
     if (tree_.args[call.list.first + i].output) return;  // ENO
   }
-  sema_.warning(DiagnosticCode::kResultUnused, call.span, "nothing takes what this call gives",
-                "assign it: `x := ...`");
+  warning(DiagnosticCode::kResultUnused, call.span, "nothing takes what this call gives",
+          "assign it: `x := ...`");
 }
 
 void Body::call_statement(ExprId id, const Callee& callee) {
@@ -289,7 +289,7 @@ void Body::call_statement(ExprId id, const Callee& callee) {
     case Callee::Kind::kError:
       for (uint32_t i = 0; i < call.list.count; ++i) {
         ExprId value = tree_.args[call.list.first + i].value;
-        if (value.valid()) sema_.infer(value);
+        if (value.valid()) infer(value);
       }
       return;
     case Callee::Kind::kInstance:
@@ -311,7 +311,7 @@ void Body::call_statement(ExprId id, const Callee& callee) {
       [[fallthrough]];
     case Callee::Kind::kBound:
     case Callee::Kind::kReference: {
-      const Note& note = sema_.infer(id);
+      const Note& note = infer(id);
       if (!note.type.valid()) return;
       if (types().is_scalar(note.type)) {
         emit_call(call, callee, without_range(types(), note.type));
@@ -349,7 +349,7 @@ ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId ty
   }
   if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);
   if (callee.kind != Callee::Kind::kStandard) return temporary_place(type);
-  std::vector<ExprId> args = sema_.ask<StandardCalls>().standard_arguments(expr, *callee.row);
+  std::vector<ExprId> args = ask<StandardCalls>().standard_arguments(expr, *callee.row);
   using stdlib::FunctionRule;
   switch (callee.row->rule) {
     case FunctionRule::kMove:
@@ -382,8 +382,8 @@ ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId ty
     case FunctionRule::kValid:
       break;  // scalars
   }
-  sema_.error(DiagnosticCode::kNotSupported, expr.span,
-              std::string(callee.row->name) + " of `" + sema_.report.type_text(type) + "`");
+  error(DiagnosticCode::kNotSupported, expr.span,
+        std::string(callee.row->name) + " of `" + sema_.report.type_text(type) + "`");
   return temporary_place(type);
 }
 

@@ -43,16 +43,16 @@ constexpr Wide kMostEntries = 1024;
 }  // namespace
 
 void Body::case_statement(const Stmt& stmt) {
-  const Note& note = sema_.infer(stmt.value);
+  const Note& note = infer(stmt.value);
   ir::TypeId type = without_range(types(), note.type);
   Traits traits = traits_of(types(), type);
   bool usable = traits.integer || traits.bits || traits.enumeration;
   if (type.valid() && !usable) {
-    sema_.error(DiagnosticCode::kBadSelector, tree_[stmt.value].span,
-                "the selector is `" + sema_.report.type_text(type) + "`");
+    error(DiagnosticCode::kBadSelector, tree_[stmt.value].span,
+          "the selector is `" + sema_.report.type_text(type) + "`");
   }
   if (!type.valid() || !usable) type = elementary(ir::Kind::kDint);
-  if (usable) type = computed_type(sema_, sema_.infer(stmt.value));
+  if (usable) type = computed_type(sema_, infer(stmt.value));
   ir::ValueId selector = value(stmt.value, usable ? type : ir::TypeId());
   if (!usable) selector = zero(type);
   std::vector<ir::BlockId> arms;
@@ -92,8 +92,8 @@ void Body::report_missing_labels(const Stmt& stmt, ir::TypeId type,
     missing += (missing.empty() ? "`" : ", `") + literal.name + "`";
   }
   if (missing.empty()) return;
-  sema_.warning(DiagnosticCode::kMissingCaseLabels, stmt.span, "no label for " + missing,
-                "add it, or an ELSE");
+  warning(DiagnosticCode::kMissingCaseLabels, stmt.span, "no label for " + missing,
+          "add it, or an ELSE");
 }
 
 std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId type,
@@ -107,14 +107,14 @@ std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId ty
     const CaseArm& arm = tree_.cases[stmt.arms.first + i];
     for (uint32_t k = 0; k < arm.labels.count; ++k) {
       const CaseLabel& label = tree_.labels[arm.labels.first + k];
-      auto low = sema_.ask<Constants>().fold_bits(label.low, type);
-      auto high = label.high.valid() ? sema_.ask<Constants>().fold_bits(label.high, type) : low;
+      auto low = ask<Constants>().fold_bits(label.low, type);
+      auto high = label.high.valid() ? ask<Constants>().fold_bits(label.high, type) : low;
       if (!low || !high) continue;
       base::SourceSpan span = tree_[label.low].span;
       if (wide_of(*low) > wide_of(*high)) {
-        sema_.error(DiagnosticCode::kBadBounds, span,
-                    "the range " + wide_text(wide_of(*low)) + ".." + wide_text(wide_of(*high)) +
-                        " is empty");
+        error(DiagnosticCode::kBadBounds, span,
+              "the range " + wide_text(wide_of(*low)) + ".." + wide_text(wide_of(*high)) +
+                  " is empty");
         continue;
       }
       intervals.push_back({wide_of(*low), wide_of(*high), arms[i], span});
@@ -127,9 +127,9 @@ std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId ty
     bool later = intervals[i].span.begin > intervals[i - 1].span.begin;
     const Interval& second = later ? intervals[i] : intervals[i - 1];
     const Interval& first = later ? intervals[i - 1] : intervals[i];
-    sema_.error(DiagnosticCode::kOverlappingLabels, second.span,
-                "the value " + wide_text(intervals[i].low) + " is already a label in line " +
-                    std::to_string(sema_.sources.locate(first.span.begin).line));
+    error(DiagnosticCode::kOverlappingLabels, second.span,
+          "the value " + wide_text(intervals[i].low) + " is already a label in line " +
+              std::to_string(sema_.sources.locate(first.span.begin).line));
     intervals[i].high = std::max(intervals[i].high, intervals[i - 1].high);
   }
   return intervals;

@@ -8,7 +8,7 @@ using stdlib::NativeId;
 
 bool Body::is_character(ExprId id) {
   const Expr& expr = tree_[id];
-  return expr.kind == ExprKind::kIndex && is_string(types(), sema_.infer(expr.operand).type);
+  return expr.kind == ExprKind::kIndex && is_string(types(), infer(expr.operand).type);
 }
 
 // From 0, whatever the dialect counts from.
@@ -16,11 +16,11 @@ ir::ValueId Body::character_position(const Expr& expr) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   ExprId index = tree_.expr_lists[expr.list.first];
   int64_t first = sema_.options.dialect == Dialect::kIec ? 1 : 0;
-  if (sema_.infer(index).constant) {
-    int64_t position = sema_.ask<Constants>().fold_integer(index).value_or(first) - first;
+  if (infer(index).constant) {
+    int64_t position = ask<Constants>().fold_integer(index).value_or(first) - first;
     return build_.constant(kI64, static_cast<uint64_t>(position));
   }
-  uint32_t capacity = types()[sema_.infer(expr.operand).type].capacity;
+  uint32_t capacity = types()[infer(expr.operand).type].capacity;
   Typed given = natural(index);
   ir::ValueId position = machine_convert(given.value, scalar(given.type), kI64);
   if (first != 0) position = build_.binary(ir::Op::kSub, kI64, position, build_.constant(kI64, 1));

@@ -41,7 +41,7 @@ void ChartBody::report_all() {
   for (const ChartStep& step : chart_.steps) {
     for (const ActionUse& use : step.uses) {
       limit_of(use);
-      for (ExprId indicator : use.indicators) sema_.infer(indicator);
+      for (ExprId indicator : use.indicators) body_.infer(indicator);
     }
   }
   for (const ChartAction& action : chart_.actions) body_.statements(action.body);
@@ -50,7 +50,7 @@ void ChartBody::report_all() {
 void ChartBody::describe_net() {
   const auto members = [&](const std::vector<uint32_t>& steps) {
     std::vector<uint32_t> numbers;
-    for (const uint32_t step : steps) numbers.push_back(sema_.resolve(steps_[step]).index);
+    for (const uint32_t step : steps) numbers.push_back(body_.resolve(steps_[step]).index);
     std::sort(numbers.begin(), numbers.end());
     return numbers;
   };
@@ -67,7 +67,7 @@ bool ChartBody::find_places() {
   auto variable = [&](std::string_view name, const char* member) {
     auto found = body_.info_.names.find(name);
     if (found == body_.info_.names.end()) return VarId();
-    const Variable& resolved = sema_.resolve(found->second);
+    const Variable& resolved = body_.resolve(found->second);
     bool own = resolved.decl != nullptr && resolved.decl->implied && resolved.type.valid();
     own = own && (member == nullptr || sema_.declared.find_member(resolved.type, member) >= 0);
     return own ? found->second : VarId();
@@ -149,7 +149,7 @@ void ChartBody::raise(uint32_t number) {
 
 // A member of the variable of a step or action.
 ir::Place ChartBody::part(VarId id, const char* member) {
-  const Variable& variable = sema_.resolve(id);
+  const Variable& variable = body_.resolve(id);
   ir::Place place = body_.member_variable_place(variable);
   ir::Step& step = place.steps.emplace_back();
   step.kind = ir::StepKind::kMember;

@@ -45,7 +45,7 @@ void ChartBody::step_uses() {
     bool active = false;  // asks something that only an active step may
     for (const sfc::Use& use : uses) {
       for (ExprId indicator : use.decl->indicators) {
-        const VarId variable = sema_.infer(indicator).variable;
+        const VarId variable = body_.infer(indicator).variable;
         if (variable.valid()) sema_.mark_written(variable);  // by what the action says
       }
       switch (use.decl->qualifier) {
@@ -215,21 +215,21 @@ void ChartBody::control(uint32_t number) {
 // An action that is a BOOL variable.
 std::optional<Target> ChartBody::variable_of(const sfc::Action& action) {
   const Expr& name = tree_[action.target];
-  VarId id = sema_.ask<Variables>().find_variable(name);
+  VarId id = body_.ask<Variables>().find_variable(name);
   if (!id.valid()) {
     NearestName nearest(name.name.text);
     for (const auto& entry : body_.info_.names) {
       if (entry.first.find('#') == std::string_view::npos) nearest.offer(entry.first);
     }
-    sema_.error(DiagnosticCode::kUnknownAction, name.span,
+    body_.error(DiagnosticCode::kUnknownAction, name.span,
                 "`" + std::string(name.name.text) + "` is neither an ACTION nor a variable",
                 nearest.fix());
     return std::nullopt;
   }
-  const Note& note = sema_.infer(action.target);
+  const Note& note = body_.infer(action.target);
   if (!note.type.valid()) return std::nullopt;
   if (!traits_of(body_.types(), note.type).boolean) {
-    sema_.error(DiagnosticCode::kUnknownAction, name.span,
+    body_.error(DiagnosticCode::kUnknownAction, name.span,
                 "`" + std::string(name.name.text) + "` is `" + sema_.report.type_text(note.type) +
                     "`; an action is an ACTION or a BOOL variable",
                 "declare an ACTION that writes it");

@@ -21,7 +21,7 @@ uint32_t group_size(size_t count) {
 
 // A clock that has begun anew, after a restart with retained steps, stands still once.
 void ChartBody::read_clock() {
-  ir::Place clock = body_.member_variable_place(sema_.resolve(clock_));
+  ir::Place clock = body_.member_variable_place(body_.resolve(clock_));
   clock.type = body_.elementary(ir::Kind::kTime);
   ir::ValueId now = build_.task_time();
   ir::ValueId before = build_.load(clock, kElapsed);
@@ -72,13 +72,13 @@ bool ChartBody::moves_at_once(uint32_t number) const {
 
 // Nothing that a step or an action has, but for `step`; nothing that can trap, and no call.
 bool ChartBody::asks_only(ExprId condition, uint32_t step) {
-  const Note& note = sema_.infer(condition);
+  const Note& note = body_.infer(condition);
   const Expr& expr = tree_[condition];
   if (note.calls || note.can_trap || !note.type.valid()) return false;
   if (note.constant) return true;
   // What the caller gave may be a part of a step.
   const bool in_out =
-      note.variable.valid() && sema_.resolve(note.variable).section == VarSection::kInOut;
+      note.variable.valid() && body_.resolve(note.variable).section == VarSection::kInOut;
   if (in_out) return false;
   switch (expr.kind) {
     case ExprKind::kLiteral:
@@ -88,12 +88,12 @@ bool ChartBody::asks_only(ExprId condition, uint32_t step) {
       return true;
     case ExprKind::kMember: {
       if (note.variable.valid()) return true;
-      const Note& outer = sema_.infer(expr.operand);
+      const Note& outer = body_.infer(expr.operand);
       for (uint32_t other = 0; other < steps_.size(); ++other) {
         if (outer.variable == steps_[other]) return other == step;
       }
       const auto is_of = [&](const std::vector<VarId>& all) {
-        return !all.empty() && sema_.resolve(all[0]).type == outer.type;
+        return !all.empty() && body_.resolve(all[0]).type == outer.type;
       };
       return !is_of(steps_) && !is_of(actions_) && asks_only(expr.operand, step);
     }
@@ -221,9 +221,8 @@ void ChartBody::count_steps() {
   if (body_.coverage_ == nullptr) return;
   for (uint32_t step = 0; step < net_.steps.size(); ++step) {
     const Name& name = net_.steps[step].decl->name;
-    when(part(steps_[step], "X"), [&] {
-      body_.count(SiteKind::kStep, name.span.begin, std::string(name.text));
-    });
+    when(part(steps_[step], "X"),
+         [&] { body_.count(SiteKind::kStep, name.span.begin, std::string(name.text)); });
   }
 }
 

@@ -7,12 +7,12 @@ namespace frontend {
 void Body::connect_inputs() {
   for (const Connection& connection : info_.connections) {
     const Arg& arg = tree_.args[connection.arg];
-    const Variable& input = sema_.resolve(connection.parameter);
+    const Variable& input = resolve(connection.parameter);
     if (input.section != VarSection::kInput || !input.type.valid()) continue;
     Target target;
     target.place = member_variable_place(input);
     target.type = input.type;
-    Sema::Within outside(sema_, kNoPou);
+    const ScopeChange outside(scope_, {});
     set_line(arg.span);
     if (types().is_scalar(input.type)) {
       store(target, value(arg.value, input.type));
@@ -25,10 +25,10 @@ void Body::connect_inputs() {
 void Body::connect_outputs() {
   for (const Connection& connection : info_.connections) {
     const Arg& arg = tree_.args[connection.arg];
-    const Variable& output = sema_.resolve(connection.parameter);
+    const Variable& output = resolve(connection.parameter);
     if (output.section != VarSection::kOutput || !output.type.valid()) continue;
     ir::Place from = member_variable_place(output);
-    Sema::Within outside(sema_, kNoPou);
+    const ScopeChange outside(scope_, {});
     set_line(arg.span);
     auto to = target(arg.value);
     if (!to) continue;
@@ -41,10 +41,9 @@ void Body::connect_outputs() {
     } else if (strings || output.type == to->type) {
       build_.copy(to->place, from);
     } else {
-      sema_.error(DiagnosticCode::kWrongArgument, arg.span,
-                  "`" + std::string(output.name.text) + "` is `" +
-                      sema_.report.type_text(output.type) + "`, its target is `" +
-                      sema_.report.type_text(to->type) + "`");
+      error(DiagnosticCode::kWrongArgument, arg.span,
+            "`" + std::string(output.name.text) + "` is `" + sema_.report.type_text(output.type) +
+                "`, its target is `" + sema_.report.type_text(to->type) + "`");
     }
   }
 }

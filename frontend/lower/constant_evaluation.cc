@@ -11,13 +11,14 @@ constexpr uint64_t kBudget = 100'000;
 
 }  // namespace
 
-std::optional<Constant> Body::evaluate(Sema& sema, ExprId id, ir::TypeId context) {
+std::optional<Constant> Body::evaluate(Sema& sema, const PouScope& scope, ExprId id,
+                                       ir::TypeId context) {
   PouInfo info;
-  Body body(sema, info, kNoPou, ir::Pou{});
+  Body body(sema, scope, info, kNoPou, ir::Pou{});
   body.evaluating_ = true;
   base::SourceSpan span = sema.tree[id].span;
   body.line_end_ = span.begin.offset;
-  Note note = sema.infer(id);
+  Note note = body.infer(id);
   const bool wide = note.width == Width::kWide;
   ir::TypeId type = without_range(sema.program.types,
                                   wide ? computed_type(sema, note) : body.own_type(note, context));
@@ -28,7 +29,7 @@ std::optional<Constant> Body::evaluate(Sema& sema, ExprId id, ir::TypeId context
     return body.run_alone(result.base_index, span);
   }
   if (!is_string(sema.program.types, type)) {
-    sema.error(DiagnosticCode::kNotConstant, span, "this has to be known when compiling");
+    body.error(DiagnosticCode::kNotConstant, span, "this has to be known when compiling");
     return std::nullopt;
   }
   ir::Place from = body.call_place(id, sema.tree[id]);
@@ -42,9 +43,9 @@ std::optional<Constant> Body::run_alone(uint32_t local, base::SourceSpan span) {
   ir::TypeId type = out_.locals[local].type;
   ir::EvalResult result = ir::evaluate_alone(sema_.program, out_, local, kBudget);
   if (result.trap) {
-    sema_.error(DiagnosticCode::kConstantTraps, span,
-                "this cannot be computed: " + std::string(ir::trap_name(result.trap->kind)) +
-                    (result.trap->text.empty() ? "" : " (" + result.trap->text + ")"));
+    error(DiagnosticCode::kConstantTraps, span,
+          "this cannot be computed: " + std::string(ir::trap_name(result.trap->kind)) +
+              (result.trap->text.empty() ? "" : " (" + result.trap->text + ")"));
     return std::nullopt;
   }
   if (types().is_scalar(type)) return scalar_constant(types(), type, result.bits);
@@ -55,8 +56,9 @@ std::optional<Constant> Body::run_alone(uint32_t local, base::SourceSpan span) {
   return value;
 }
 
-std::optional<Constant> evaluate_constant(Sema& sema, ExprId expr, ir::TypeId context) {
-  return Body::evaluate(sema, expr, context);
+std::optional<Constant> evaluate_constant(Sema& sema, const PouScope& scope, ExprId expr,
+                                          ir::TypeId context) {
+  return Body::evaluate(sema, scope, expr, context);
 }
 
 }  // namespace frontend

@@ -67,13 +67,13 @@ ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
 bool Body::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
   switch (implicit_fit(types(), from, to, sema_.options.dialect)) {
     case Fit::kNone:
-      sema_.error(DiagnosticCode::kTypeMismatch, span,
-                  "`" + sema_.report.type_text(from) + "` does not go with `" +
-                      sema_.report.type_text(to) + "`",
-                  sema_.report.conversion_fix(to));
+      error(DiagnosticCode::kTypeMismatch, span,
+            "`" + sema_.report.type_text(from) + "` does not go with `" +
+                sema_.report.type_text(to) + "`",
+            sema_.report.conversion_fix(to));
       return false;
     case Fit::kNarrowing:
-      return sema_.allow_narrowing(from, to, span);
+      return allow_narrowing(from, to, span);
     case Fit::kSame:
     case Fit::kLossless:
       break;
@@ -178,9 +178,9 @@ ir::ValueId Body::time_to_time(Typed from, ir::TypeId to) {
 }
 
 ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion) {
-  ExprId argument = sema_.ask<Calls>().conversion_argument(expr);
+  ExprId argument = ask<Calls>().conversion_argument(expr);
   ir::TypeId to = elementary(conversion.to);
-  const Note& note = sema_.infer(argument);
+  const Note& note = infer(argument);
   bool named = !conversion.any_source && ir::is_elementary(conversion.from);
   if (is_string(types(), note.type) && !named) return from_string(argument, to);
   // TO_DINT(a * b) converts what was computed, INT_TO_DINT takes an INT.

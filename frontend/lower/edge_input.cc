@@ -6,12 +6,12 @@ namespace frontend {
 
 void Body::detect_edges() {
   for (VarId id : info_.variables) {
-    const Variable& input = sema_.resolve(id);
+    const Variable& input = resolve(id);
     if (!input.edge.valid() || !input.type.valid()) continue;
     constexpr ir::Scalar kBool = ir::Scalar::kBool;
     set_line(input.name.span);
     ir::Place raw = member_variable_place(input);
-    ir::Place last = member_variable_place(sema_.resolve(input.last));
+    ir::Place last = member_variable_place(resolve(input.last));
     ir::Place edge = variable_place(input.edge);
     ir::ValueId now = build_.load(raw, kBool);
     ir::ValueId before = build_.load(last, kBool);

@@ -12,13 +12,12 @@ std::optional<Body::Enable> Body::enable_of(const Expr& call, const Callee& call
   Enable enable;
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
-    if (!sema_.ask<Calls>().is_enable(arg, pou)) continue;
+    if (!ask<Calls>().is_enable(arg, pou)) continue;
     const Arg*& slot = ir::same_name(arg.name.text, "EN") ? enable.en : enable.eno;
     bool output = &slot == &enable.eno;
     if (arg.output != output || slot != nullptr || (arg.negated && !output)) {
-      sema_.error(DiagnosticCode::kBadEnable, arg.span,
-                  output ? "ENO is an output" : "EN is an input",
-                  output ? "write `ENO => variable`, once" : "write `EN := condition`, once");
+      error(DiagnosticCode::kBadEnable, arg.span, output ? "ENO is an output" : "EN is an input",
+            output ? "write `ENO => variable`, once" : "write `EN := condition`, once");
       return std::nullopt;
     }
     if (arg.value.valid()) slot = &arg;
@@ -33,9 +32,8 @@ void Body::open_enable(Enable& enable) {
   if (enable.eno != nullptr) {
     enable.target = target(enable.eno->value);
     if (enable.target && !traits_of(types(), enable.target->type).boolean) {
-      sema_.error(
-          DiagnosticCode::kBadEnable, enable.eno->span,
-          "ENO is BOOL, its target is `" + sema_.report.type_text(enable.target->type) + "`");
+      error(DiagnosticCode::kBadEnable, enable.eno->span,
+            "ENO is BOOL, its target is `" + sema_.report.type_text(enable.target->type) + "`");
       enable.target.reset();
     }
   }
@@ -86,7 +84,7 @@ uint64_t Body::default_bits(ir::TypeId type) const {
 }
 
 ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
-  Callee callee = sema_.ask<Calls>().callee(expr);
+  Callee callee = ask<Calls>().callee(expr);
   auto enable = enable_of(expr, callee);
   if (!enable) return emit_call(expr, callee, own);
   open_enable(*enable);
@@ -94,7 +92,7 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
   ir::ValueId value = emit_call(expr, callee, own);
   uint64_t otherwise = default_bits(own);
   if (callee.kind == Callee::Kind::kFunction && sema_.declared.pous[callee.pou].result.valid()) {
-    const Variable& declared = sema_.resolve(sema_.declared.pous[callee.pou].result);
+    const Variable& declared = resolve(sema_.declared.pous[callee.pou].result);
     otherwise = declared.init.valid() ? sema_.program.constants[declared.init].bits
                                       : default_bits(declared.type);
   }
@@ -104,8 +102,8 @@ ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
 
 // A result that is no scalar.
 ir::Place Body::call_place(ExprId id, const Expr& expr) {
-  ir::TypeId type = sema_.infer(id).type;
-  Callee callee = sema_.ask<Calls>().callee(expr);
+  ir::TypeId type = infer(id).type;
+  Callee callee = ask<Calls>().callee(expr);
   auto enable = enable_of(expr, callee);
   if (!enable) return call_place(expr, callee, type);
   ir::Place result = temporary_place(type);
@@ -119,7 +117,7 @@ ir::Place Body::call_place(ExprId id, const Expr& expr) {
 void Body::call_statement(const Stmt& stmt) {
   const Expr& call = tree_[stmt.value];
   if (call.kind != ExprKind::kCall) return bare_call(stmt.value);
-  Callee callee = sema_.ask<Calls>().callee(call);
+  Callee callee = ask<Calls>().callee(call);
   auto enable = enable_of(call, callee);
   if (!enable) return call_statement(stmt.value, callee);
   open_enable(*enable);

@@ -42,12 +42,12 @@ void Body::for_statement(const Stmt& stmt) {
     statements(stmt.body);
     return;
   }
-  VarId variable = sema_.infer(stmt.target).variable;
+  VarId variable = infer(stmt.target).variable;
   ir::BlockId head = build_.new_block();
   ir::BlockId body = build_.new_block();
   ir::BlockId next = build_.new_block();
   ir::BlockId exit = build_.new_block();
-  const bool may_be_left_out = !sema_.infer(stmt.from).constant || !loop.constant_to;
+  const bool may_be_left_out = !infer(stmt.from).constant || !loop.constant_to;
   if (coverage_ != nullptr && may_be_left_out) {
     const ir::BlockId sides[] = {build_.new_block(), build_.new_block()};
     for_test(loop, sides[0], sides[1]);
@@ -76,9 +76,9 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   Traits traits = traits_of(types(), to->type);
   bool bits = traits.bits && sema_.options.dialect != Dialect::kIec;
   if (to->bit_size != 0 || to->character.valid() || (!traits.integer && !bits)) {
-    sema_.error(DiagnosticCode::kBadLoopVariable, tree_[stmt.target].span,
-                "a FOR variable of `" + sema_.report.type_text(to->type) + "`",
-                "use an integer variable");
+    error(DiagnosticCode::kBadLoopVariable, tree_[stmt.target].span,
+          "a FOR variable of `" + sema_.report.type_text(to->type) + "`",
+          "use an integer variable");
     return false;
   }
   loop.variable = to->place;
@@ -88,12 +88,12 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   const ir::Type& declared = types()[to->type];
   if (declared.kind == ir::Kind::kSubrange) loop.limits = {declared.low, declared.high};
   ir::ValueId from = value(stmt.from, to->type);
-  const bool wide = ir::scalar_size(loop.machine) < 4 && sema_.infer(stmt.to).width == Width::kWide;
+  const bool wide = ir::scalar_size(loop.machine) < 4 && infer(stmt.to).width == Width::kWide;
   const ir::TypeId bound = wide ? elementary(ir::Kind::kDint) : loop.type;
   loop.to = value(stmt.to, bound);
   loop.bound = scalar(bound);
-  if (sema_.infer(stmt.to).type.valid() && sema_.infer(stmt.to).constant) {
-    if (auto known = sema_.ask<Constants>().fold(stmt.to, bound)) loop.constant_to = known->integer;
+  if (infer(stmt.to).type.valid() && infer(stmt.to).constant) {
+    if (auto known = ask<Constants>().fold(stmt.to, bound)) loop.constant_to = known->integer;
   }
   for_step(stmt, loop);
   set_line(stmt.span);
@@ -104,13 +104,13 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
 void Body::for_step(const Stmt& stmt, ForLoop& loop) {
   loop.constant_step = 1;
   if (!stmt.by.valid()) return;
-  const Note& note = sema_.infer(stmt.by);
+  const Note& note = infer(stmt.by);
   if (!note.type.valid()) return;
   if (note.constant) {
-    auto step = sema_.ask<Constants>().fold_integer(stmt.by);
+    auto step = ask<Constants>().fold_integer(stmt.by);
     if (!step) return;
     if (*step == 0) {
-      sema_.error(DiagnosticCode::kZeroStep, tree_[stmt.by].span, "BY 0 would never end");
+      error(DiagnosticCode::kZeroStep, tree_[stmt.by].span, "BY 0 would never end");
       return;
     }
     loop.constant_step = *step;

@@ -12,14 +12,14 @@ Body::Labels Body::labels_of(Range32 list) {
     if (stmt.kind != StmtKind::kLabel) continue;
     const Name name = tree_.name(stmt.name);
     // `x : f(y);` is a slip of the finger, and would be a label and a call.
-    if (sema_.ask<Variables>().find_variable(name).valid()) {
-      sema_.error(DiagnosticCode::kDuplicateName, name.span,
-                  "`" + std::string(name.text) + "` is a variable and cannot be a label",
-                  "write `:=` to assign to it");
+    if (ask<Variables>().find_variable(name).valid()) {
+      error(DiagnosticCode::kDuplicateName, name.span,
+            "`" + std::string(name.text) + "` is a variable and cannot be a label",
+            "write `:=` to assign to it");
     }
     if (!labels.emplace(name.text, build_.new_block()).second) {
-      sema_.error(DiagnosticCode::kDuplicateName, name.span,
-                  "the label `" + std::string(name.text) + "` stands twice");
+      error(DiagnosticCode::kDuplicateName, name.span,
+            "the label `" + std::string(name.text) + "` stands twice");
     }
   }
   return labels;
@@ -34,7 +34,7 @@ void Body::label(const Stmt& stmt) {
 
 void Body::jump(const Stmt& stmt) {
   if (!stmt.instruction) {
-    sema_.allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
+    allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
   }
   const Name wanted = tree_.name(stmt.name);
   for (size_t i = labels_.size(); i-- > 0;) {
@@ -49,15 +49,14 @@ void Body::jump(const Stmt& stmt) {
                   !(other.span.begin < info_.decl->span.begin) &&
                   other.span.begin < info_.decl->span.end;
     if (!inside || !ir::same_name(tree_.name(other.name).text, wanted.text)) continue;
-    sema_.error(DiagnosticCode::kJumpIntoBlock, stmt.span,
-                "the label " + name + " lies inside a block that this jump is not in",
-                "put the label in front of the block, or the jump inside it");
+    error(DiagnosticCode::kJumpIntoBlock, stmt.span,
+          "the label " + name + " lies inside a block that this jump is not in",
+          "put the label in front of the block, or the jump inside it");
     return;
   }
   NearestName nearest(wanted.text);
   for (const LabelList& list : labels_) nearest.offer_all(list.labels);
-  sema_.error(DiagnosticCode::kUnknownLabel, wanted.span, "there is no label " + name,
-              nearest.fix());
+  error(DiagnosticCode::kUnknownLabel, wanted.span, "there is no label " + name, nearest.fix());
 }
 
 }  // namespace frontend

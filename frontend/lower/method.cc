@@ -3,6 +3,7 @@
 // reference, an interface variable or THIS may lead to a derived one that has another.
 #include "frontend/lower/call.h"
 #include "frontend/sema/calls.h"
+#include "frontend/sema/objects.h"
 
 namespace frontend {
 
@@ -12,14 +13,14 @@ Receiver Body::receiver_of(const Expr& head) {
   if (head.kind != ExprKind::kMember) return receiver;
   const ExprId id = head.operand;
   const Expr& operand = tree_[id];
-  if (sema_.objects.is_own(operand)) {
-    receiver.fixed = sema_.objects.is_super(operand);
+  if (ask<Objects>().is_own(operand)) {
+    receiver.fixed = ask<Objects>().is_super(operand);
     return receiver;
   }
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   const bool interface = is_interface(types(), note.type) && !note.reference.valid();
   const bool indexed =
-      operand.kind == ExprKind::kIndex && types().is_reference(sema_.infer(operand.operand).type);
+      operand.kind == ExprKind::kIndex && types().is_reference(infer(operand.operand).type);
   if (interface) {
     receiver.handle = natural(id).value;
   } else if (note.reference.valid() && is_interface(types(), note.type)) {
@@ -59,13 +60,13 @@ void Body::emit_method_call(const PouInfo& method, const Receiver& receiver) {
 }
 
 const MemberCode& Body::property_code(ExprId id) {
-  return sema_.declared.pous[sema_.infer(id).property].code.find(tree_[id].name.text)->second;
+  return sema_.declared.pous[infer(id).property].code.find(tree_[id].name.text)->second;
 }
 
 Body::Result Body::result_of(const PouInfo& callee) {
   Result result;
   if (!callee.result.valid()) return result;
-  const Variable& variable = sema_.resolve(callee.result);
+  const Variable& variable = resolve(callee.result);
   if (variable.type.valid() && types().is_scalar(variable.type)) {
     result.value = build_.load(argument_place(callee, variable), scalar(variable.type));
   } else if (variable.type.valid()) {
@@ -86,9 +87,9 @@ Body::Result Body::read_property(ExprId id) {
   const Expr& expr = tree_[id];
   const MemberCode& code = property_code(id);
   if (code.getter == kNoPou) {
-    sema_.error(DiagnosticCode::kPropertyAccess, expr.name.span,
-                quoted_name(expr.name) + " has no GET and cannot be read");
-    return {zero(sema_.infer(id).type), temporary_place(sema_.infer(id).type)};
+    error(DiagnosticCode::kPropertyAccess, expr.name.span,
+          quoted_name(expr.name) + " has no GET and cannot be read");
+    return {zero(infer(id).type), temporary_place(infer(id).type)};
   }
   Receiver receiver = receiver_of(expr);
   set_line(expr.span);
@@ -100,13 +101,14 @@ std::optional<Target> Body::property_target(ExprId id) {
   const Expr& expr = tree_[id];
   const MemberCode& code = property_code(id);
   if (code.setter == kNoPou) {
-    sema_.error(DiagnosticCode::kPropertyAccess, expr.name.span,
-                quoted_name(expr.name) + " has no SET and cannot be written");
+    error(DiagnosticCode::kPropertyAccess, expr.name.span,
+          quoted_name(expr.name) + " has no SET and cannot be written");
     return std::nullopt;
   }
-  if (!sema_.objects.check_access(sema_.declared.pous[code.setter], expr.name)) return std::nullopt;
+  if (!ask<Objects>().check_access(sema_.declared.pous[code.setter], expr.name))
+    return std::nullopt;
   Target out;
-  const ir::TypeId type = sema_.infer(id).type;
+  const ir::TypeId type = infer(id).type;
   out.getter = code.getter;
   out.setter = code.setter;
   out.receiver = receiver_of(expr);
@@ -120,7 +122,7 @@ std::optional<Target> Body::property_target(ExprId id) {
 
 void Body::set_property(const Target& target, std::optional<ir::ValueId> value) {
   const PouInfo& accessor = sema_.declared.pous[target.setter];
-  const Variable& parameter = sema_.resolve(sema_.objects.value_of(accessor));
+  const Variable& parameter = resolve(ask<Objects>().value_of(accessor));
   Receiver receiver = target.receiver;
   prepare_receiver(accessor, receiver);
   const ir::Place argument = argument_place(accessor, parameter);
@@ -141,18 +143,18 @@ void Body::settle(const Target& target) {
 // `fb.act;` and `act;` call an action, or a method that needs no arguments.
 void Body::bare_call(ExprId id) {
   const Expr& expr = tree_[id];
-  if (!sema_.objects.names_method(expr)) {
-    if (expr.kind == ExprKind::kMember && sema_.objects.damaged(expr.operand)) return;
-    sema_.error(DiagnosticCode::kNoEffect, expr.span,
-                "this is no statement: nothing is assigned or called",
-                "write `:=` and a value, or `()` to call");
+  if (!ask<Objects>().names_method(expr)) {
+    if (expr.kind == ExprKind::kMember && ask<Objects>().damaged(expr.operand)) return;
+    error(DiagnosticCode::kNoEffect, expr.span,
+          "this is no statement: nothing is assigned or called",
+          "write `:=` and a value, or `()` to call");
     return;
   }
   Expr call;
   call.kind = ExprKind::kCall;
   call.span = expr.span;
   call.operand = id;
-  const Callee callee = sema_.ask<Calls>().callee(call);
+  const Callee callee = ask<Calls>().callee(call);
   if (callee.kind == Callee::Kind::kMethod) call_function(call, callee, false);
 }
 

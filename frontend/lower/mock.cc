@@ -21,35 +21,34 @@ ir::Step member(uint32_t index) {
 std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slot) {
   const Expr& expr = tree_[target];
   const bool plain = expr.kind == ExprKind::kName;
-  if (!plain || !sema_.ask<Variables>().find_variable(expr.name).valid()) {
+  if (!plain || !ask<Variables>().find_variable(expr.name).valid()) {
     const PouInfo* function =
-        sema_.declared.find_pou(sema_.namespaces.find(NameSort::kDeclaration, expr));
+        sema_.declared.find_pou(sema_.namespaces.find(NameSort::kDeclaration, scope_, expr));
     if (function != nullptr && function->decl->kind == PouKind::kFunction) {
       if (function->mock.present) return global_place(function->mock.*slot);
       const std::string name(expr.name.text);
       const bool mocks = slot == &MockSlots::active;
-      sema_.error(
-          DiagnosticCode::kBadMock, expr.span,
-          mocks ? "`" + name + "` is a function" : "no test mocks the function `" + name + "`",
-          mocks ? "write MOCK_FUNCTION " + name + " RETURNS value;"
-                : "calls are counted where MOCK_FUNCTION names the function");
+      error(DiagnosticCode::kBadMock, expr.span,
+            mocks ? "`" + name + "` is a function" : "no test mocks the function `" + name + "`",
+            mocks ? "write MOCK_FUNCTION " + name + " RETURNS value;"
+                  : "calls are counted where MOCK_FUNCTION names the function");
       return std::nullopt;
     }
     if (function != nullptr) {
-      sema_.error(DiagnosticCode::kBadMock, expr.span,
-                  "`" + std::string(expr.name.text) + "` is a type, not an instance",
-                  "declare an instance in VAR and name that, or name the one inside of another: "
-                  "MOCK uut.sensor;");
+      error(DiagnosticCode::kBadMock, expr.span,
+            "`" + std::string(expr.name.text) + "` is a type, not an instance",
+            "declare an instance in VAR and name that, or name the one inside of another: "
+            "MOCK uut.sensor;");
       return std::nullopt;
     }
   }
-  const ir::TypeId type = sema_.infer(target).type;
+  const ir::TypeId type = infer(target).type;
   const PouInfo* block = sema_.declared.pou_of(type);
   if (block == nullptr || !block->mock.present) {
     if (type.valid()) {
-      sema_.error(DiagnosticCode::kBadMock, expr.span,
-                  "`" + sema_.report.type_text(type) + "` is no function block",
-                  "MOCK takes an instance, MOCK_FUNCTION a function; a variable is just set");
+      error(DiagnosticCode::kBadMock, expr.span,
+            "`" + sema_.report.type_text(type) + "` is no function block",
+            "MOCK takes an instance, MOCK_FUNCTION a function; a variable is just set");
     }
     return std::nullopt;
   }
@@ -63,20 +62,19 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
 
 void Body::mock_statement(const Stmt& stmt) {
   if (!sema_.for_tests()) {
-    sema_.error(DiagnosticCode::kTestOnly, stmt.span, "mocks are for tests only",
-                "put it into a TEST block and run that with stc test");
+    error(DiagnosticCode::kTestOnly, stmt.span, "mocks are for tests only",
+          "put it into a TEST block and run that with stc test");
     return;
   }
   const auto active = mock_slot(stmt.target, &MockSlots::active);
   if (!active) return;
   if (stmt.kind == StmtKind::kMockFunction) {
-    const PouInfo* function =
-        sema_.declared.find_pou(sema_.namespaces.find(NameSort::kDeclaration, tree_[stmt.target]));
+    const PouInfo* function = sema_.declared.find_pou(
+        sema_.namespaces.find(NameSort::kDeclaration, scope_, tree_[stmt.target]));
     if (function == nullptr) return;
     if (stmt.value.valid() && !function->result.valid()) {
-      sema_.error(DiagnosticCode::kBadMock, tree_[stmt.value].span,
-                  "`" + std::string(function->decl->name.text) + "` has no result",
-                  "leave RETURNS out");
+      error(DiagnosticCode::kBadMock, tree_[stmt.value].span,
+            "`" + std::string(function->decl->name.text) + "` has no result", "leave RETURNS out");
       return;
     }
     if (stmt.value.valid()) {
@@ -95,9 +93,9 @@ void Body::mock_statement(const Stmt& stmt) {
 
 // MOCK_FUNCTION declarations of a test's file and of the test itself are active from its start.
 void Body::activate_mock_bodies() {
-  for (const PouInfo* function : sema_.ask<TestBuild>().mocked_functions()) {
+  for (const PouInfo* function : ask<TestBuild>().mocked_functions()) {
     for (size_t i = 0; i < function->mock.bodies.size(); ++i) {
-      if (!sema_.ask<TestBuild>().mock_applies(function->mock.bodies[i], *info_.decl)) continue;
+      if (!ask<TestBuild>().mock_applies(function->mock.bodies[i], *info_.decl)) continue;
       build_.store(global_place(function->mock.active), ir::Scalar::kI32,
                    build_.constant(ir::Scalar::kI32, kMockedByValue + 1 + i));
     }
@@ -157,13 +155,13 @@ void Body::forward_to_mock(const PouInfo& mock) {
   info_.callees.push_back(mock.number);
   std::vector<VarId> results;
   for (uint32_t i = 0; i < info_.locals.size(); ++i) {
-    const Variable& own = sema_.resolve(info_.locals[i]);
+    const Variable& own = resolve(info_.locals[i]);
     const bool given = own.section == VarSection::kInput || own.section == VarSection::kInOut;
     if (info_.locals[i] == info_.result || own.section == VarSection::kOutput) {
       results.push_back(info_.locals[i]);
     }
     if (!given || i >= mock.locals.size()) continue;
-    const ir::Place to = argument_place(mock, sema_.resolve(mock.locals[i]));
+    const ir::Place to = argument_place(mock, resolve(mock.locals[i]));
     const ir::Place from = variable_place(info_.locals[i]);
     if (own.section == VarSection::kInOut && !own.by_reference) {
       build_.store(to, ir::Scalar::kAddr, build_.address(from));
@@ -175,9 +173,9 @@ void Body::forward_to_mock(const PouInfo& mock) {
   }
   build_.call_function(mock.id);
   for (VarId id : results) {
-    const Variable& own = sema_.resolve(id);
+    const Variable& own = resolve(id);
     if (own.index >= mock.locals.size()) continue;
-    const ir::Place from = argument_place(mock, sema_.resolve(mock.locals[own.index]));
+    const ir::Place from = argument_place(mock, resolve(mock.locals[own.index]));
     if (types().is_scalar(own.type)) {
       build_.store(variable_place(id), scalar(own.type), build_.load(from, scalar(own.type)));
     } else {

@@ -81,15 +81,14 @@ ir::ValueId Body::emit_lazy(const Expr& expr) {
 }
 
 ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
-  Note common =
-      sema_.ask<OperatorTypes>().unify(sema_.infer(left), sema_.infer(right), tree_[left].span);
+  Note common = ask<OperatorTypes>().unify(infer(left), infer(right), tree_[left].span);
   if (!common.type.valid()) return zero(elementary(ir::Kind::kBool));
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
-  common.type = compared_type(sema_, common.type, {left, right});
+  common.type = compared_type(*this, common.type, {left, right});
   ir::ValueId a = value(left, common.type);
   ir::ValueId b = value(right, common.type);
   const bool equality = op == BinaryOp::kEq || op == BinaryOp::kNe;
-  const bool known = sema_.infer(left).constant || sema_.infer(right).constant;
+  const bool known = infer(left).constant || infer(right).constant;
   if (types().is_reference(common.type) && equality && known) {  // with NULL
     return build_.compare(op == BinaryOp::kEq ? ir::Op::kEq : ir::Op::kNe, ir::Scalar::kU64, a, b);
   }
@@ -138,8 +137,8 @@ ir::ValueId Body::compare_places(BinaryOp op, const ir::Place& a, const ir::Plac
 }
 
 ir::ValueId Body::emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
-  const Note& a = sema_.infer(left);
-  const Note& b = sema_.infer(right);
+  const Note& a = infer(left);
+  const Note& b = infer(right);
   if (types().is_reference(a.type) || types().is_reference(b.type)) {
     return emit_pointer_arithmetic(op, left, right, own);
   }

@@ -4,6 +4,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/sema/common_uses.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/shared_addresses.h"
 #include "frontend/sema/variables.h"
 #include "frontend/sema/width.h"
@@ -40,14 +41,14 @@ ir::Place Body::view_place(const AddressView& view) {
 
 // The BYTE that holds the bit which `id` names.
 ir::Place Body::view_place(ExprId id) {
-  if (VarId variable = sema_.infer(id).variable; variable.valid()) {
-    return view_place(sema_.resolve(variable).view);
+  if (VarId variable = infer(id).variable; variable.valid()) {
+    return view_place(resolve(variable).view);
   }
-  return view_place(*direct_view(sema_, tree_[id]));
+  return view_place(*direct_view(*this, tree_[id]));
 }
 
 ir::Place Body::variable_place(VarId id) {
-  const Variable& variable = sema_.resolve(id);
+  const Variable& variable = resolve(id);
   if (variable.view.global != AddressView::kNone) return view_place(variable.view);
   if (variable.storage == Storage::kGlobal) {
     note_outer_use(id, false, {});
@@ -77,14 +78,14 @@ ir::Place Body::member_variable_place(const Variable& variable) {
 
 // Any expression that is not a scalar, and any scalar that has a place of its own.
 ir::Place Body::place(ExprId id) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.reference.valid()) return raw_place(id);
   return target_place(raw_reference(id), note.type);
 }
 
 ir::Place Body::raw_place(ExprId id) {
   const Expr& expr = tree_[id];
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (is_known(note)) return constant_place(id);
   if (note.property != kNoPou) return property_place(id);
   if (note.variable.valid()) return variable_place(note.variable);
@@ -92,13 +93,13 @@ ir::Place Body::raw_place(ExprId id) {
     case ExprKind::kMember:
       return member_place(expr);
     case ExprKind::kIndex:
-      return types().is_reference(sema_.infer(expr.operand).type) ? dereferenced_place(expr)
-                                                                  : index_place(expr);
+      return types().is_reference(infer(expr.operand).type) ? dereferenced_place(expr)
+                                                            : index_place(expr);
     case ExprKind::kDeref:
       return dereferenced_place(expr);
     case ExprKind::kDirect:
-      if (const AddressView* view = direct_view(sema_, expr)) return view_place(*view);
-      return global_place(sema_.ask<Variables>().direct_member(expr));
+      if (const AddressView* view = direct_view(*this, expr)) return view_place(*view);
+      return global_place(ask<Variables>().direct_member(expr));
     case ExprKind::kCall:
       return call_place(id, expr);
     case ExprKind::kAssign:
@@ -114,16 +115,16 @@ ir::Place Body::property_place(ExprId id) {
   const Result result = read_property(id);
   if (!result.value.valid()) return result.place;
   const ir::Place kept =
-      temporary_place(sema_.resolve(sema_.declared.pous[property_code(id).getter].result).type);
+      temporary_place(resolve(sema_.declared.pous[property_code(id).getter].result).type);
   build_.store(kept, scalar(kept.type), result.value);
   return kept;
 }
 
 ir::Place Body::member_place(const Expr& expr) {
-  ir::TypeId outer = sema_.infer(expr.operand).type;
+  ir::TypeId outer = infer(expr.operand).type;
   ir::Place place = this->place(expr.operand);
   if (const PouInfo* block = sema_.declared.pou_of(outer)) {
-    const Variable& variable = sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
+    const Variable& variable = resolve(ask<Objects>().find_parameter(*block, expr.name.text));
     place.steps.push_back(step_to(ir::StepKind::kEnter));
     place.steps.push_back(step_to(ir::StepKind::kMember, variable.index));
     place.type = variable.type;
@@ -140,25 +141,24 @@ ir::Place Body::bit_word_place(ExprId structure, const Note& part) {
   ir::Place out = place(structure);
   auto member = static_cast<uint32_t>(part.bit_member);
   out.steps.push_back(step_to(ir::StepKind::kMember, member));
-  out.type = types()[sema_.infer(structure).type].members[member].type;
+  out.type = types()[infer(structure).type].members[member].type;
   return out;
 }
 
 ir::Place Body::index_place(const Expr& expr) {
-  ir::TypeId array = sema_.infer(expr.operand).type;
+  ir::TypeId array = infer(expr.operand).type;
   ir::Place place = this->place(expr.operand);
   for (uint32_t i = 0; i < expr.list.count; ++i) {
     ExprId index = tree_.expr_lists[expr.list.first + i];
     ir::Step at = step_to(ir::StepKind::kIndex);
-    if (sema_.infer(index).constant) {
-      at.constant_index = sema_.ask<Constants>().fold_integer(index).value_or(0);
+    if (infer(index).constant) {
+      at.constant_index = ask<Constants>().fold_integer(index).value_or(0);
     } else {
       const auto& dim = types()[array].dims[i];
       const Expr& sum = tree_[index];
-      const Note note = sema_.infer(index);
-      const bool own =
-          note.width == Width::kWide && sum.kind == ExprKind::kBinary &&
-          wraps_outside(sema_, note, sum, sema_.infer(sum.operand), {dim.low, dim.high});
+      const Note note = infer(index);
+      const bool own = note.width == Width::kWide && sum.kind == ExprKind::kBinary &&
+                       wraps_outside(sema_, note, sum, infer(sum.operand), {dim.low, dim.high});
       at.value = own ? computed_in(index, note.type) : natural(index).value;
     }
     place.steps.push_back(at);
@@ -169,21 +169,21 @@ ir::Place Body::index_place(const Expr& expr) {
 
 // Constants get no variable of the frame: they are read where the image keeps them.
 ir::Place Body::constant_place(ExprId id) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   ir::Place place;
   place.base = ir::PlaceBase::kConst;
   place.base_type = place.type = note.type;
   if (types().is_scalar(note.type)) {
-    auto bits = sema_.ask<Constants>().fold_bits(id, note.type, Known::kInitially);
+    auto bits = ask<Constants>().fold_bits(id, note.type, Known::kInitially);
     place.constant = sema_.program.constants.scalar(bits.value_or(0));
     return place;
   }
   if (!is_string(types(), note.type)) {
-    auto part = sema_.ask<Constants>().initial_part(id);
+    auto part = ask<Constants>().initial_part(id);
     if (part) place.constant = part->init;
     return place;
   }
-  auto text = sema_.ask<Constants>().fold(id, note.type, Known::kInitially);
+  auto text = ask<Constants>().fold(id, note.type, Known::kInitially);
   place.constant = sema_.program.constants.add({0, text ? text->text : std::string(), {}});
   return place;
 }
@@ -201,19 +201,18 @@ void Body::note_outer_use(VarId global, bool written, base::SourceSpan span) {
 
 // Evaluates the indices of an assignment's left side; reports what cannot be written.
 std::optional<Target> Body::target(ExprId id) {
-  const Note note = sema_.infer(id);
+  const Note note = infer(id);
   if (!note.type.valid()) return std::nullopt;
   ExprId whole = id;
-  while (sema_.infer(whole).bit_size != 0 && !sema_.infer(whole).view) {
+  while (infer(whole).bit_size != 0 && !infer(whole).view) {
     whole = tree_[whole].operand;
   }
-  const bool property =
-      sema_.infer(whole).property != kNoPou && !sema_.infer(whole).reference.valid();
+  const bool property = infer(whole).property != kNoPou && !infer(whole).reference.valid();
   if (!property && !check_writable(id)) return std::nullopt;
-  if (!types().is_scalar(note.type) && sema_.ask<Variables>().holds_input(note.type)) {
-    sema_.error(DiagnosticCode::kAssignToInput, tree_[id].span,
-                "`" + sema_.report.type_text(note.type) + "` has inputs (AT %I*) among its members",
-                "assign the other members one by one");
+  if (!types().is_scalar(note.type) && ask<Variables>().holds_input(note.type)) {
+    error(DiagnosticCode::kAssignToInput, tree_[id].span,
+          "`" + sema_.report.type_text(note.type) + "` has inputs (AT %I*) among its members",
+          "assign the other members one by one");
     return std::nullopt;
   }
   Target out;
@@ -225,8 +224,8 @@ std::optional<Target> Body::target(ExprId id) {
   out.type = note.type;
   ExprId at = id;
   out.bit_size = note.bit_size;
-  while (sema_.infer(at).bit_size != 0) {
-    const Note part = sema_.infer(at);
+  while (infer(at).bit_size != 0) {
+    const Note part = infer(at);
     out.bit_offset += part.bit_number * part.bit_size;
     if (part.view) {
       out.place = view_place(at);

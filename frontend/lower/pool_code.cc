@@ -1,5 +1,7 @@
 #include "frontend/lower/pool_code.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
+#include "frontend/sema/pools.h"
 
 namespace frontend {
 namespace {
@@ -80,12 +82,12 @@ void PoolCode::call_made(uint32_t method, const ir::Place& at) {
 // Nothing can come between looking at a state and setting it: no task is suspended there.
 ir::ValueId PoolCode::make(const Expr& call) {
   const ExprId type = sema_.tree.args[call.list.first].value;
-  const Pool* pool = sema_.pools.of_new(type);
+  const Pool* pool = body_.ask<Pools>().of_new(type);
   if (pool == nullptr) return body_.zero({});
   const Expr& written = sema_.tree[type];
   const Range32 args = written.kind == ExprKind::kCall ? written.list : Range32();
   if (pool->boxed && args.count != 0) {
-    sema_.error(DiagnosticCode::kBadConstruction, written.span,
+    body_.error(DiagnosticCode::kBadConstruction, written.span,
                 "`" + std::string(pool->name) + "` has no FB_Init that takes arguments");
     return body_.zero({});
   }
@@ -108,7 +110,7 @@ ir::ValueId PoolCode::make(const Expr& call) {
 
 void PoolCode::destroy(const Expr& call) {
   const ExprId argument = sema_.tree.args[call.list.first].value;
-  const Note& note = sema_.infer(argument);
+  const Note& note = body_.infer(argument);
   if (!note.type.valid() || !body_.check_writable(argument)) return;
   const ir::Place pointer = body_.place(argument);
   body_.set_line(call.span);
@@ -118,7 +120,7 @@ void PoolCode::destroy(const Expr& call) {
   const ir::BlockId given = build_.new_block();
   build_.branch(build_.compare(ir::Op::kNe, kU64, object, null), given, done);
   build_.start(given);
-  for (const Pool* pool : sema_.pools.of_target(types()[note.type].base)) {
+  for (const Pool* pool : body_.ask<Pools>().of_target(types()[note.type].base)) {
     search(*pool, [&](const ir::Place& element, const ir::Place& state) {
       start_.when(has_state(state, kPoolUsed), [&] {
         start_.when(build_.compare(ir::Op::kEq, kU64, handle(*pool, element), object), [&] {
@@ -143,9 +145,9 @@ void PoolCode::free(const Pool& pool, const ir::Place& element, const ir::Place&
 }
 
 void PoolCode::visit_all() {
-  for (const Pool& pool : sema_.pools.all()) {
+  for (const Pool& pool : sema_.pools.all) {
     const ir::TypeId type = sema_.declared.pous[pool.block].self;
-    if (!sema_.objects.constructs(type)) continue;
+    if (!body_.ask<Objects>().constructs(type)) continue;
     search(pool, [&](const ir::Place& element, const ir::Place& state) {
       start_.when(has_state(state, kPoolUsed), [&] { start_.visit(element, type); });
     });
@@ -172,7 +174,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
     const uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
     return build_.store(at, scalar, build_.constant(scalar, bits));
   }
-  if (!sema_.pools.holds_instance(id)) return build_.init(at, init);
+  if (!body_.ask<Pools>().holds_instance(id)) return build_.init(at, init);
   if (!init.valid()) init = type.init;
   if (type.kind == ir::Kind::kArray) return reset_elements(at, id, init);
   const bool instance = types().is_instance(id);
@@ -183,7 +185,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
     const ir::Member& member = type.members[i];
-    const ir::ConstId given = sema_.ask<Constants>().listed(init, i);
+    const ir::ConstId given = body_.ask<Constants>().listed(init, i);
     if (instance && !given.valid()) continue;
     reset(part(inside, ir::StepKind::kMember, i, member.type), member.type,
           given.valid() ? given : member.init);
@@ -209,7 +211,7 @@ void PoolCode::leave_method() {
 // From the outside in.
 void PoolCode::leave(const ir::Place& at, ir::TypeId id) {
   if (!types().contains(id)) return;
-  if (!sema_.pools.leaves(id)) return;
+  if (!body_.ask<Pools>().leaves(id)) return;
   const ir::Type type = types()[id];
   if (type.kind == ir::Kind::kArray) {
     return start_.each_element(at, id, {},

@@ -45,14 +45,14 @@ ir::Place Body::addressable_place(ExprId id) {
   const Expr& expr = tree_[id];
   ExprId whole = id;
   while (tree_[whole].kind == ExprKind::kMember || tree_[whole].kind == ExprKind::kIndex) {
-    if (sema_.infer(whole).variable.valid()) break;
+    if (infer(whole).variable.valid()) break;
     whole = tree_[whole].operand;
   }
-  if (VarId variable = sema_.infer(whole).variable; variable.valid()) {
+  if (VarId variable = infer(whole).variable; variable.valid()) {
     sema_.mark_written(variable);  // who has the address can
     note_outer_use(variable, true, expr.span);
   }
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   const bool part = note.bit_size != 0;
   const bool value = expr.kind == ExprKind::kLiteral || expr.kind == ExprKind::kCall ||
                      expr.kind == ExprKind::kUnary || expr.kind == ExprKind::kBinary ||
@@ -62,16 +62,16 @@ ir::Place Body::addressable_place(ExprId id) {
   }
   const bool property = note.property != kNoPou && !note.reference.valid();
   if (!part && !value && !property && !note.constant) return place(id);
-  sema_.error(DiagnosticCode::kBadReference, expr.span,
-              part ? "a bit of a variable has no address" : "a value has no address",
-              "store it in a variable and refer to that");
+  error(DiagnosticCode::kBadReference, expr.span,
+        part ? "a bit of a variable has no address" : "a value has no address",
+        "store it in a variable and refer to that");
   return temporary_place(note.type);
 }
 
 // The handle that leads to what `id` names.
 ir::ValueId Body::handle_of(ExprId id) {
   const Expr& expr = tree_[id];
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.type.valid()) return zero({});
   if (note.reference.valid()) return raw_reference(id);
   if (expr.kind == ExprKind::kDeref) return natural(expr.operand).value;
@@ -85,49 +85,48 @@ ir::ValueId Body::handle_of(ExprId id) {
 // The value of a REFERENCE TO itself, which otherwise stands for its target.
 ir::ValueId Body::raw_reference(ExprId id) {
   const Expr& expr = tree_[id];
-  if (expr.kind == ExprKind::kCall) return emit_call(expr, sema_.infer(id).reference);
+  if (expr.kind == ExprKind::kCall) return emit_call(expr, infer(id).reference);
   return build_.load(raw_place(id), ir::Scalar::kU64);
 }
 
 // What binds a REFERENCE TO: a variable, another reference, a pointer's value, or NULL.
 ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   const ir::Type& reference = types()[target];
   if (!note.type.valid()) return zero(target);
   const bool zero_literal = note.constant && note.flex == Flex::kInteger &&
                             sema_.options.dialect != Dialect::kIec &&
-                            sema_.ask<Constants>().fold_integer(id) == 0;
+                            ask<Constants>().fold_integer(id) == 0;
   if ((note.constant && note.flex == Flex::kNull) || zero_literal) {
     return build_.constant(ir::Scalar::kU64, 0);
   }
   const bool pointer = types().is_reference(note.type) && types()[note.type].base == reference.base;
   if (pointer) return natural(id).value;
   if (note.type == reference.base || types().is_a(note.type, reference.base)) return handle_of(id);
-  sema_.error(DiagnosticCode::kTypeMismatch, tree_[id].span,
-              "`" + sema_.report.type_text(target) + "` cannot refer to a `" +
-                  sema_.report.type_text(note.type) + "`");
+  error(DiagnosticCode::kTypeMismatch, tree_[id].span,
+        "`" + sema_.report.type_text(target) + "` cannot refer to a `" +
+            sema_.report.type_text(note.type) + "`");
   return zero(target);
 }
 
 // An instance where a variable of an interface is wanted.
 ir::ValueId Body::interface_value(ExprId id, ir::TypeId target) {
-  const ir::TypeId type = sema_.infer(id).type;
+  const ir::TypeId type = infer(id).type;
   if (types().is_a(type, types()[target].base)) return handle_of(id);
-  sema_.error(DiagnosticCode::kTypeMismatch, tree_[id].span,
-              "`" + sema_.report.type_text(type) + "` does not implement `" +
-                  sema_.report.type_text(target) + "`",
-              "declare it with IMPLEMENTS " + sema_.report.type_text(target));
+  error(DiagnosticCode::kTypeMismatch, tree_[id].span,
+        "`" + sema_.report.type_text(type) + "` does not implement `" +
+            sema_.report.type_text(target) + "`",
+        "declare it with IMPLEMENTS " + sema_.report.type_text(target));
   return zero(target);
 }
 
 // r REF= x
 void Body::bind_reference(const Stmt& stmt) {
-  const Note& note = sema_.infer(stmt.target);
+  const Note& note = infer(stmt.target);
   if (!note.type.valid()) return;
   if (!note.reference.valid()) {
-    sema_.error(DiagnosticCode::kBadReference, tree_[stmt.target].span,
-                "`" + sema_.report.type_text(note.type) + "` is not a REFERENCE TO",
-                "assign with `:=`");
+    error(DiagnosticCode::kBadReference, tree_[stmt.target].span,
+          "`" + sema_.report.type_text(note.type) + "` is not a REFERENCE TO", "assign with `:=`");
     return;
   }
   const ir::Place where = raw_place(stmt.target);
@@ -147,10 +146,10 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
     case ReferenceCall::kQuery:
       return attempt(tree_.args[expr.list.first + 1].value, argument, expr.span).fits;
     case ReferenceCall::kSizeof:
-      return machine_convert(build_.size_of(sema_.ask<Calls>().type_of_argument(argument)),
+      return machine_convert(build_.size_of(ask<Calls>().type_of_argument(argument)),
                              ir::Scalar::kU32, scalar(own));
     case ReferenceCall::kIsValid: {
-      const bool raw = sema_.infer(argument).reference.valid();
+      const bool raw = infer(argument).reference.valid();
       const ir::ValueId handle = raw ? raw_reference(argument) : natural(argument).value;
       const ir::ValueId address = build_.flat(handle);
       return build_.compare(ir::Op::kNe, ir::Scalar::kU32, address,
@@ -163,8 +162,8 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
 
 ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
   const ir::TypeId dword = elementary(ir::Kind::kDword);
-  const bool first = types().is_reference(sema_.infer(left).type);
-  const bool second = types().is_reference(sema_.infer(right).type);
+  const bool first = types().is_reference(infer(left).type);
+  const bool second = types().is_reference(infer(right).type);
   if (!types().is_reference(own)) {
     if (first && second && op == BinaryOp::kSub) {
       const ir::ValueId a = build_.flat(natural(left).value);
@@ -182,7 +181,7 @@ ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right
 // A chain of sums moves its pointer once, by all that is added: ADR(a) + 4 * i - 4 may leave the
 // variable on its way.
 MovedPointer Body::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
-  const bool first = types().is_reference(sema_.infer(left).type);
+  const bool first = types().is_reference(infer(left).type);
   MovedPointer sum;
   Typed number;
   if (first) sum = pointer_of_sum(left);
@@ -203,7 +202,7 @@ MovedPointer Body::pointer_of_sum(ExprId id) {
   const Expr& expr = tree_[id];
   const bool sum = expr.kind == ExprKind::kBinary &&
                    (expr.binary == BinaryOp::kAdd || expr.binary == BinaryOp::kSub);
-  if (!sum || sema_.infer(id).constant) return {natural(id).value, {}};
+  if (!sum || infer(id).constant) return {natural(id).value, {}};
   return moved_pointer(expr.binary, expr.operand, expr.right);
 }
 
@@ -214,7 +213,7 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
   const bool reference_target = types().is_reference(to);
   const bool codesys = sema_.options.dialect != Dialect::kIec;
   if (reference_source && reference_target) {
-    if (sema_.ask<OperatorTypes>().reference_fits(from.type, to)) {
+    if (ask<OperatorTypes>().reference_fits(from.type, to)) {
       return is_instance_view(types(), from.type, to) ? whole_instance(build_, from.value)
                                                       : from.value;
     }
@@ -229,9 +228,9 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
       return machine_convert(build_.flat(from.value), ir::Scalar::kU32, scalar(to));
     }
     if (codesys && bytes != 0) {
-      sema_.error(DiagnosticCode::kBadReference, span,
-                  "an address does not fit into `" + sema_.report.type_text(to) + "`",
-                  "use DWORD or LWORD");
+      error(DiagnosticCode::kBadReference, span,
+            "an address does not fit into `" + sema_.report.type_text(to) + "`",
+            "use DWORD or LWORD");
       return zero(to);
     }
   } else {
@@ -243,16 +242,16 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
       return build_.unflat(machine_convert(from.value, scalar(from.type), ir::Scalar::kU32));
     }
   }
-  sema_.error(DiagnosticCode::kTypeMismatch, span,
-              "`" + sema_.report.type_text(from.type) + "` does not go with `" +
-                  sema_.report.type_text(to) + "`");
+  error(DiagnosticCode::kTypeMismatch, span,
+        "`" + sema_.report.type_text(from.type) + "` does not go with `" +
+            sema_.report.type_text(to) + "`");
   return zero(to);
 }
 
 // A constant where a pointer is wanted: NULL, 0, or an address.
 ir::ValueId Body::constant_reference(ExprId id) {
-  if (sema_.infer(id).flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
-  const auto bits = sema_.ask<Constants>().fold_bits(id, elementary(ir::Kind::kLword));
+  if (infer(id).flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
+  const auto bits = ask<Constants>().fold_bits(id, elementary(ir::Kind::kLword));
   if (!bits || *bits == 0) return build_.constant(ir::Scalar::kU64, 0);
   if (*bits > 0xffffffffu) return build_.constant(ir::Scalar::kU64, *bits);
   return build_.unflat(build_.constant(ir::Scalar::kU32, *bits));

@@ -11,14 +11,14 @@ void Body::infer_results(Range32 list) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
     if (!stmt.instruction) continue;
     bool keeps = stmt.kind == StmtKind::kAssign && tree_[stmt.target].kind == ExprKind::kResult;
-    if (keeps) sema_.infer(stmt.value);
+    if (keeps) infer(stmt.value);
     if (stmt.kind == StmtKind::kIf) infer_results(tree_.branches[stmt.arms.first].body);
   }
 }
 
 void Body::keep_result(const Stmt& stmt) {
-  if (!sema_.ask<Expressions>().check_result(stmt)) return;
-  ir::TypeId type = sema_.infer(stmt.target).type;
+  if (!ask<Expressions>().check_result(stmt)) return;
+  ir::TypeId type = infer(stmt.target).type;
   uint32_t number = tree_[stmt.target].number;
   bool single = !tree_.results[number].at_label && type.valid() && types().is_scalar(type);
   if (!single) {

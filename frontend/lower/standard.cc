@@ -56,7 +56,7 @@ ir::Op shift_op(FunctionId id) {
 
 ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own) {
   const stdlib::FunctionRow& row = *callee.row;
-  std::vector<ExprId> args = sema_.ask<StandardCalls>().standard_arguments(expr, row);
+  std::vector<ExprId> args = ask<StandardCalls>().standard_arguments(expr, row);
   switch (row.rule) {
     case FunctionRule::kClock:
       return build_.task_time();
@@ -102,7 +102,7 @@ ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::Type
     case FunctionRule::kCompare:
       return compare_chain(
           args, standard_operator(row.id),
-          callee.typed.valid() ? callee.typed : sema_.ask<OperatorTypes>().infer_common(args).type);
+          callee.typed.valid() ? callee.typed : ask<OperatorTypes>().infer_common(args).type);
     case FunctionRule::kStringNumber:
       return string_number(args, row);
     case FunctionRule::kString:
@@ -130,7 +130,7 @@ ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir
   // As DINT, though no argument is one: computed_in() has asked for it.
   const bool wide = scalar(own) == ir::Scalar::kI32 && sema_.options.dialect != Dialect::kIec &&
                     std::all_of(args.begin(), args.end(), [&](ExprId arg) {
-                      const Note& note = sema_.infer(arg);
+                      const Note& note = infer(arg);
                       return is_small(sema_, note) || note.flex == Flex::kInteger;
                     });
   const auto operand = [&](ExprId arg) { return wide ? computed_in(arg, own) : value(arg, own); };
@@ -210,7 +210,7 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common) {
   if (!common.valid()) return zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
-  common = compared_type(sema_, common, args);
+  common = compared_type(*this, common, args);
   ir::ValueList values;
   std::vector<ir::Place> places;
   for (ExprId arg : args) {

@@ -79,8 +79,8 @@ ir::ValueId Body::day_of_week(ExprId moment) {
 
 // SPLIT_DATE(IN := d, YEAR => y, ...): a statement.
 void Body::split(const Expr& call, const stdlib::FunctionRow& row) {
-  std::vector<ExprId> args = sema_.ask<StandardCalls>().standard_arguments(call, row);
-  if (args.empty() || !sema_.infer(args[0]).type.valid()) return;
+  std::vector<ExprId> args = ask<StandardCalls>().standard_arguments(call, row);
+  if (args.empty() || !infer(args[0]).type.valid()) return;
   ir::ValueId ns = value(args[0], elementary(*kind_of_name(stdlib::operand_type(row, 0))));
   std::vector<std::optional<Target>> targets(args.size());
   for (size_t i = 1; i < args.size(); ++i) {
@@ -91,9 +91,9 @@ void Body::split(const Expr& call, const stdlib::FunctionRow& row) {
     uint32_t part = first_part(row) + i - 1;
     ir::TypeId type = targets[i]->type;
     if (!holds_part(types(), type, part)) {
-      sema_.error(DiagnosticCode::kWrongArgument, tree_[args[i]].span,
-                  "`" + sema_.report.type_text(type) + "` cannot hold this part",
-                  "use a variable of type INT or UINT");
+      error(DiagnosticCode::kWrongArgument, tree_[args[i]].span,
+            "`" + sema_.report.type_text(type) + "` cannot hold this part",
+            "use a variable of type INT or UINT");
       continue;
     }
     ir::ValueId number = machine_convert(moment_part(ns, part), ir::Scalar::kI32, scalar(type));

@@ -1,5 +1,6 @@
 #include "frontend/lower/start_code.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 
 #include "frontend/lower/call.h"
 #include "frontend/lower/pool_code.h"
@@ -32,10 +33,10 @@ ir::Place element(const ir::Place& at, const std::vector<ir::Dimension>& dims, i
 void StartCode::run() {
   PouInfo& info = body_.info_;
   if (info.owner == kNoPou) {
-    references(sema_.objects.start_globals());
-    for (VarId id : sema_.objects.start_globals()) variable(id);
+    references(sema_.started.globals);
+    for (VarId id : sema_.started.globals) variable(id);
     PoolCode(body_).visit_all();
-    const ir::Place flag = body_.variable_place(sema_.objects.change_flag());
+    const ir::Place flag = body_.variable_place(sema_.started.change_flag);
     return build_.store(flag, ir::Scalar::kU32, number(0));
   }
   const PouInfo& block = sema_.declared.pous[info.owner];
@@ -50,7 +51,7 @@ void StartCode::run() {
 
 void StartCode::references(const std::vector<VarId>& variables) {
   for (VarId id : variables) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = body_.resolve(id);
     if (variable.section == VarSection::kInOut || !variable.type.valid()) continue;
     if (!sema_.start_values.inside(variable.type, variable.init)) continue;
     span_ = variable.name.span;
@@ -69,7 +70,7 @@ void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId 
     });
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
-    const ir::ConstId given = sema_.ask<Constants>().listed(init, i);
+    const ir::ConstId given = body_.ask<Constants>().listed(init, i);
     if (!ir::is_structure(type.kind) && !given.valid()) continue;  // a matter of the block
     ir::Place member = at;
     if (!ir::is_structure(type.kind)) member.steps.push_back(step_to(ir::StepKind::kEnter));
@@ -93,7 +94,7 @@ void StartCode::each_element(const ir::Place& at, ir::TypeId id, ir::ConstId ini
     return loop(at, type.dims, 0, type.base, [&](const ir::Place& one) { each(one, value); });
   }
   for (uint64_t i = 0; i < total; ++i) {
-    each(element(at, type.dims, type.base, i), sema_.ask<Constants>().listed(init, i));
+    each(element(at, type.dims, type.base, i), body_.ask<Constants>().listed(init, i));
   }
 }
 
@@ -108,17 +109,18 @@ void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
 }
 
 void StartCode::variable(VarId id) {
-  const Variable& variable = sema_.resolve(id);
-  if (variable.section == VarSection::kInOut || !sema_.objects.constructs(variable.type)) return;
+  const Variable& variable = body_.resolve(id);
+  if (variable.section == VarSection::kInOut || !body_.ask<Objects>().constructs(variable.type))
+    return;
   const Spec* spec =
-      variable.decl == nullptr ? nullptr : sema_.objects.construction(variable.decl->spec);
+      variable.decl == nullptr ? nullptr : body_.ask<Objects>().construction(variable.decl->spec);
   body_.set_line(variable.name.span);
   span_ = variable.name.span;
   value(body_.variable_place(id), variable.type, spec);
 }
 
 void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
-  if (!sema_.objects.constructs(type)) return;
+  if (!body_.ask<Objects>().constructs(type)) return;
   const ir::Kind kind = types()[type].kind;
   if (kind == ir::Kind::kArray) return elements(at, type, spec);
   if (!ir::is_structure(kind)) {
@@ -130,8 +132,8 @@ void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
     member.type = types()[type].members[i].type;
     const StructureField* field = sema_.declared.find_field(type, types()[type].members[i].name);
     const bool whole = field != nullptr && field->bit < 0;
-    Sema::Within outside(sema_, kNoPou);  // what the members' arguments name
-    value(member, member.type, whole ? sema_.objects.construction(field->spec) : nullptr);
+    const ScopeChange outside(body_.scope_, {});  // what the members' arguments name
+    value(member, member.type, whole ? body_.ask<Objects>().construction(field->spec) : nullptr);
   }
 }
 
@@ -141,13 +143,13 @@ void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec)
   const ir::TypeId base = types()[type].base;
   const bool written = spec != nullptr && spec->kind == SpecKind::kArray;
   if (!written || spec->element_args.count == 0) {
-    const Spec* inner = written ? sema_.objects.construction(spec->element) : nullptr;
+    const Spec* inner = written ? body_.ask<Objects>().construction(spec->element) : nullptr;
     return loop(at, dims, 0, base, [&](const ir::Place& one) { value(one, base, inner); });
   }
   uint64_t total = 1;
   for (const ir::Dimension& dim : dims) total *= dim.count();
   if (total != spec->element_args.count || !types().is_instance(base)) {
-    sema_.error(DiagnosticCode::kBadConstruction, spec->span,
+    body_.error(DiagnosticCode::kBadConstruction, spec->span,
                 std::to_string(spec->element_args.count) + " lists of arguments for " +
                     std::to_string(total) + " elements",
                 "give one for each, or one for all: ARRAY[..] OF Block(arguments)");
@@ -201,7 +203,7 @@ void StartCode::when(ir::ValueId condition, const std::function<void()>& then) {
 }
 
 const PouInfo* StartCode::code_of(const PouInfo& block, std::string_view name) const {
-  const uint32_t method = sema_.objects.find_code(block.number, name).code.method;
+  const uint32_t method = body_.ask<Objects>().find_code(block.number, name).code.method;
   return method == kNoPou ? nullptr : &sema_.declared.pous[method];
 }
 
@@ -224,14 +226,14 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, boo
   ir::Place stamp = at;
   if (block.stamp.valid()) {
     stamp.steps.push_back(step_to(ir::StepKind::kEnter));
-    stamp.steps.push_back(step_to(ir::StepKind::kMember, sema_.resolve(block.stamp).index));
-    stamp.type = sema_.resolve(block.stamp).type;
+    stamp.steps.push_back(step_to(ir::StepKind::kMember, body_.resolve(block.stamp).index));
+    stamp.type = body_.resolve(block.stamp).type;
   }
   auto is = [&](uint32_t value) {
     return build_.compare(ir::Op::kEq, kU32, build_.load(stamp, kU32), number(value));
   };
   auto set = [&](uint32_t value) { build_.store(stamp, kU32, number(value)); };
-  const uint32_t made = block.stamp.valid() ? sema_.objects.stamp_of(block) : 0;
+  const uint32_t made = block.stamp.valid() ? body_.ask<Objects>().stamp_of(block) : 0;
   if (code_of(block, kFbExit) != nullptr) {
     when(is(ir::kLeavingStamp), [&] {
       exit(at, block);
@@ -243,7 +245,7 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, boo
     build_.call_method(sema_.declared.pous[block.start].id, at);
   }
   if (init == nullptr && args.count != 0) {
-    sema_.error(DiagnosticCode::kBadConstruction, span_,
+    body_.error(DiagnosticCode::kBadConstruction, span_,
                 quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
   }
   if (!block.stamp.valid()) return;
@@ -273,16 +275,16 @@ void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
   if (!bind(written, method, bindings) || !body_.check_in_outs(written, method, bindings)) return;
   body_.info_.callees.push_back(method.number);
   body_.evaluate_arguments(written, bindings);
-  if (!sema_.objects.change_flag().valid()) return;  // there are errors
-  const ir::Place flag = body_.variable_place(sema_.objects.change_flag());
+  if (!sema_.started.change_flag.valid()) return;  // there are errors
+  const ir::Place flag = body_.variable_place(sema_.started.change_flag);
   const ir::ValueId changed =
       build_.compare(ir::Op::kNe, ir::Scalar::kU32, build_.load(flag, ir::Scalar::kU32), number(0));
   for (const Body::Binding& binding : bindings) {
-    body_.pass_input(binding, body_.argument_place(method, sema_.resolve(binding.variable)));
+    body_.pass_input(binding, body_.argument_place(method, body_.resolve(binding.variable)));
   }
   body_.pass_defaults(method, bindings);
   for (VarId id : method.locals) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = body_.resolve(id);
     if (variable.section != VarSection::kInput || !is_implicit(variable.name)) continue;
     if (!traits_of(types(), variable.type).boolean) continue;
     // What is made has its initial values, retained variables too.
@@ -300,7 +302,7 @@ bool StartCode::bind(const Expr& call, const PouInfo& method,
   const std::string of = name + " of " + quoted_name(sema_.declared.pous[method.owner].decl->name);
   std::vector<VarId> parameters;
   for (VarId id : method.locals) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = body_.resolve(id);
     const bool input =
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
     if (input && !is_implicit(variable.name)) parameters.push_back(id);
@@ -308,13 +310,13 @@ bool StartCode::bind(const Expr& call, const PouInfo& method,
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = sema_.tree.args[call.list.first + i];
     if (arg.output) {
-      sema_.error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
+      body_.error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
       return false;
     }
     if (!arg.name.empty()) {
       if (!body_.bind_named(arg, method, bindings)) return false;
     } else if (i >= parameters.size()) {
-      sema_.error(DiagnosticCode::kBadConstruction, arg.span,
+      body_.error(DiagnosticCode::kBadConstruction, arg.span,
                   of + " takes " + std::to_string(parameters.size()) + " arguments");
       return false;
     } else if (arg.value.valid()) {
@@ -322,11 +324,11 @@ bool StartCode::bind(const Expr& call, const PouInfo& method,
     }
   }
   for (VarId id : parameters) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = body_.resolve(id);
     bool given = variable.decl != nullptr && variable.decl->init.valid();
     for (const Body::Binding& binding : bindings) given = given || binding.variable == id;
     if (given) continue;
-    sema_.error(DiagnosticCode::kBadConstruction, call.span,
+    body_.error(DiagnosticCode::kBadConstruction, call.span,
                 of + " needs " + quoted_name(variable.name),
                 ir::same_name(name, kFbInit)
                     ? "give it in the declaration: name : Block(" +

@@ -14,8 +14,8 @@ void Body::statements(Range32 list) {
     bool counts = stmt.kind != StmtKind::kEmpty && stmt.kind != StmtKind::kError &&
                   stmt.kind != StmtKind::kLabel;
     if (i > 0 && counts && was_reachable && !build_.reachable() && !warned) {
-      sema_.warning(DiagnosticCode::kUnreachableCode, stmt.span,
-                    "nothing gets here: the statement before always leaves");
+      warning(DiagnosticCode::kUnreachableCode, stmt.span,
+              "nothing gets here: the statement before always leaves");
       warned = true;
     }
     statement(stmt);
@@ -62,11 +62,10 @@ void Body::statement(const Stmt& stmt) {
 }
 
 ir::ValueId Body::condition(ExprId expr) {
-  const Note& note = sema_.infer(expr);
+  const Note& note = infer(expr);
   if (note.type.valid() && !traits_of(types(), note.type).boolean) {
-    sema_.error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
-                "the condition is `" + sema_.report.type_text(note.type) + "`",
-                "compare it: `x <> 0`");
+    error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
+          "the condition is `" + sema_.report.type_text(note.type) + "`", "compare it: `x <> 0`");
     return zero(elementary(ir::Kind::kBool));
   }
   return value(expr, elementary(ir::Kind::kBool));
@@ -81,10 +80,10 @@ void Body::if_statement(const Stmt& stmt) {
     const base::SourcePos at = tree_[branch.condition].span.begin;
     ir::BlockId then = build_.new_block();
     ir::BlockId otherwise = last ? done : build_.new_block();
-    const Note& note = sema_.infer(branch.condition);
+    const Note& note = infer(branch.condition);
     if (note.constant && note.type.valid()) {
-      sema_.warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
-                    "this condition is always the same");
+      warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
+              "this condition is always the same");
     }
     decide(condition(branch.condition), then, otherwise, at, i == 0 ? "IF" : "ELSIF");
     build_.start(then);
@@ -114,14 +113,14 @@ void Body::leave_loops() {
 
 // `goes_on`: the value of the condition with which there is another round.
 void Body::check_end(ExprId condition, bool goes_on) {
-  const Note& note = sema_.infer(condition);
+  const Note& note = infer(condition);
   if (!note.constant || !note.type.valid() || !traits_of(types(), note.type).boolean) return;
-  const auto value = sema_.ask<Constants>().fold(condition, elementary(ir::Kind::kBool));
+  const auto value = ask<Constants>().fold(condition, elementary(ir::Kind::kBool));
   if (!value || (value->integer != 0) != goes_on) return;
-  sema_.warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,
-                std::string("this loop never ends: its condition is always ") +
-                    (goes_on ? "TRUE" : "FALSE") + ", and nothing in it leaves it",
-                "let the condition depend on what the loop changes, or leave it with EXIT");
+  warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,
+          std::string("this loop never ends: its condition is always ") +
+              (goes_on ? "TRUE" : "FALSE") + ", and nothing in it leaves it",
+          "let the condition depend on what the loop changes, or leave it with EXIT");
 }
 
 void Body::while_statement(const Stmt& stmt) {
@@ -151,9 +150,9 @@ void Body::repeat_statement(const Stmt& stmt) {
 void Body::leave_loop(const Stmt& stmt) {
   bool exit = stmt.kind == StmtKind::kExit;
   if (loops_.empty()) {
-    sema_.error(DiagnosticCode::kExitOutsideLoop, stmt.span,
-                std::string(exit ? "EXIT" : "CONTINUE") + " stands in no loop",
-                exit ? "RETURN leaves the POU" : "");
+    error(DiagnosticCode::kExitOutsideLoop, stmt.span,
+          std::string(exit ? "EXIT" : "CONTINUE") + " stands in no loop",
+          exit ? "RETURN leaves the POU" : "");
     return;
   }
   if (exit) loops_.back().left = true;

@@ -78,8 +78,8 @@ ir::Place Body::narrow_string(ir::Place source, bool is_wide) {
 }
 
 ir::Place Body::to_string(const Expr& call, const Conversion& conversion, ir::TypeId type) {
-  ExprId argument = sema_.ask<Calls>().conversion_argument(call);
-  const Note& note = sema_.infer(argument);
+  ExprId argument = ask<Calls>().conversion_argument(call);
+  const Note& note = infer(argument);
   bool named = !conversion.any_source && ir::is_elementary(conversion.from);
   if (is_string(types(), note.type) && !named) return string_to_string(argument, type);
   ir::TypeId from =
@@ -107,7 +107,7 @@ ir::Place Body::string_to_string(ExprId source, ir::TypeId type) {
 }
 
 void Body::write_text(const ir::Place& text, Typed source) {
-  if (is_enum(types(), source.type) && sema_.ask<StandardCalls>().prints_names(source.type)) {
+  if (is_enum(types(), source.type) && ask<StandardCalls>().prints_names(source.type)) {
     return write_enumerator_name(text, source);
   }
   ir::Kind kind = types().root_kind(source.type);

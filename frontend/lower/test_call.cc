@@ -46,10 +46,10 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
   }
   const bool named = args.size() != call.list.count;
   if (args.size() < row.fewest || args.size() > row.most || named) {
-    sema_.error(DiagnosticCode::kWrongArgumentCount, call.span,
-                std::string(row.name) + " with " + std::to_string(call.list.count) +
-                    (named ? " arguments, not all of them values without a name" : " arguments"),
-                "it takes, in this order: " + std::string(row.parameters));
+    error(DiagnosticCode::kWrongArgumentCount, call.span,
+          std::string(row.name) + " with " + std::to_string(call.list.count) +
+              (named ? " arguments, not all of them values without a name" : " arguments"),
+          "it takes, in this order: " + std::string(row.parameters));
     return;
   }
   const ExprId message = args.size() == row.most && row.most > 1 ? args.back() : ExprId();
@@ -80,34 +80,34 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
 }
 
 bool Body::is_message(ExprId message) {
-  const Note& note = sema_.infer(message);
+  const Note& note = infer(message);
   if (!note.type.valid() || is_string(types(), note.type)) return note.type.valid();
-  sema_.error(DiagnosticCode::kWrongArgument, tree_[message].span,
-              "the message is `" + sema_.report.type_text(note.type) + "`",
-              "the last argument is the text that a failure shows: 'pump is off'");
+  error(DiagnosticCode::kWrongArgument, tree_[message].span,
+        "the message is `" + sema_.report.type_text(note.type) + "`",
+        "the last argument is the text that a failure shows: 'pump is off'");
   return false;
 }
 
 bool Body::is_time_ahead(ExprId duration) {
-  const Note& note = sema_.infer(duration);
+  const Note& note = infer(duration);
   if (!note.type.valid()) return false;
   const bool time = traits_of(types(), note.type).duration;
   const bool back =
       time && note.constant &&
       static_cast<int64_t>(
-          sema_.ask<Constants>().fold_bits(duration, elementary(ir::Kind::kLtime)).value_or(0)) < 0;
+          ask<Constants>().fold_bits(duration, elementary(ir::Kind::kLtime)).value_or(0)) < 0;
   if (time && !back) return true;
-  sema_.error(DiagnosticCode::kWrongArgument, tree_[duration].span,
-              back ? std::string("time does not go back")
-                   : "the duration is `" + sema_.report.type_text(note.type) + "`",
-              back ? "every test begins anew at time 0; advance by what is missing"
-                   : "write a TIME: ADVANCE_TIME(T#5s)");
+  error(DiagnosticCode::kWrongArgument, tree_[duration].span,
+        back ? std::string("time does not go back")
+             : "the duration is `" + sema_.report.type_text(note.type) + "`",
+        back ? "every test begins anew at time 0; advance by what is missing"
+             : "write a TIME: ADVANCE_TIME(T#5s)");
   return false;
 }
 
 void Body::advance_time(ExprId duration) {
   const Typed ns{value(duration, elementary(ir::Kind::kLtime)), elementary(ir::Kind::kLtime)};
-  if (!sema_.infer(duration).constant) {
+  if (!infer(duration).constant) {
     const ir::ValueId zero = build_.constant(ir::Scalar::kI64, 0);
     const ir::ValueId ahead = build_.compare(ir::Op::kLe, ir::Scalar::kI64, zero, ns.value);
     fail_unless(ahead, {}, [&] {
@@ -119,8 +119,8 @@ void Body::advance_time(ExprId duration) {
 
 void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {
   const Relation relation = relation_of(call);
-  const Note common = sema_.ask<OperatorTypes>().unify(sema_.infer(args[0]), sema_.infer(args[1]),
-                                                       tree_[args[1]].span);
+  const Note common =
+      ask<OperatorTypes>().unify(infer(args[0]), infer(args[1]), tree_[args[1]].span);
   if (!common.type.valid()) return;
   std::function<ir::Place()> actual;
   std::function<ir::Place()> expected;
@@ -132,12 +132,12 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
     expected = [this, b] { return narrow_string(b, wide(b.type)); };
     holds = compare_places(relation.op, a, b);
   } else if (!types().is_scalar(common.type)) {
-    sema_.error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
-                "`" + sema_.report.type_text(common.type) + "` cannot be compared as a whole",
-                "compare its members or elements");
+    error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
+          "`" + sema_.report.type_text(common.type) + "` cannot be compared as a whole",
+          "compare its members or elements");
     return;
   } else {
-    const ir::TypeId type = compared_type(sema_, common.type, {args[0], args[1]});
+    const ir::TypeId type = compared_type(*this, common.type, {args[0], args[1]});
     const Typed a{value(args[0], type), type};
     const Typed b{value(args[1], type), type};
     actual = [this, a] { return text_of(a); };

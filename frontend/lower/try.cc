@@ -26,9 +26,9 @@ void Body::enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan 
   scope.outer = build_.set_handler(handler);
   scope.finally = finally;
   if (tries_.size() == base::kMaxTryDepth) {
-    sema_.error(DiagnosticCode::kTooDeep, span,
-                "more than " + std::to_string(base::kMaxTryDepth) + " levels of __TRY",
-                "move a part into a function");
+    error(DiagnosticCode::kTooDeep, span,
+          "more than " + std::to_string(base::kMaxTryDepth) + " levels of __TRY",
+          "move a part into a function");
   }
   if (finally.valid()) scope.where = temporary_place(elementary(ir::Kind::kUdint));
   ir::BlockId body = build_.new_block();
@@ -130,9 +130,9 @@ void Body::catch_variable(const Stmt& stmt) {
   bool wide_enough = types().is_scalar(variable->type) && !traits.boolean &&
                      (traits.integer || traits.bits || traits.enumeration);
   if (!wide_enough) {
-    sema_.error(DiagnosticCode::kTypeMismatch, tree_[stmt.target].span,
-                "the variable of __CATCH is `" + sema_.report.type_text(variable->type) + "`",
-                "declare it as ExceptionCode or as an integer");
+    error(DiagnosticCode::kTypeMismatch, tree_[stmt.target].span,
+          "the variable of __CATCH is `" + sema_.report.type_text(variable->type) + "`",
+          "declare it as ExceptionCode or as an integer");
     return;
   }
   store(*variable, machine_convert(kind, kU32, scalar(variable->type)));

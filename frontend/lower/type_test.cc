@@ -6,7 +6,7 @@ namespace frontend {
 
 // The reference to an instance that `id` is or holds; reports what is neither.
 std::optional<ir::ValueId> Body::object_handle(ExprId id) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.type.valid()) return std::nullopt;
   if (note.constant && note.flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
   if (types().is_instance(note.type)) return handle_of(id);
@@ -15,19 +15,18 @@ std::optional<ir::ValueId> Body::object_handle(ExprId id) {
   if (is_interface(types(), note.type) || (reference && types().is_instance(target))) {
     return natural(id).value;
   }
-  sema_.error(
-      DiagnosticCode::kBadTypeTest, tree_[id].span,
-      "`" + sema_.report.type_text(note.type) + "` is no instance of a block and refers to none",
-      "use an instance, a reference to one, or a variable of an interface");
+  error(DiagnosticCode::kBadTypeTest, tree_[id].span,
+        "`" + sema_.report.type_text(note.type) + "` is no instance of a block and refers to none",
+        "use an instance, a reference to one, or a variable of an interface");
   return std::nullopt;
 }
 
 // Binds the variable `left` to the instance when its type allows; whether it does.
 Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
   Attempt result{zero(elementary(ir::Kind::kBool)), build_.constant(ir::Scalar::kU64, 0)};
-  const Note note = sema_.infer(left);
+  const Note note = infer(left);
   if (!note.type.valid()) {
-    sema_.infer(right);
+    infer(right);
     return result;
   }
   const bool bound = note.reference.valid() && !is_interface(types(), note.type);
@@ -37,9 +36,9 @@ Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
   const bool good = wanted.valid() &&
                     (types().is_instance(wanted) || types()[wanted].kind == ir::Kind::kInterface);
   if (!good) {
-    sema_.error(DiagnosticCode::kBadTypeTest, tree_[left].span,
-                "`" + sema_.report.type_text(reference) + "` cannot take what a type test finds",
-                "use a variable of an interface, or a reference to a function block or class");
+    error(DiagnosticCode::kBadTypeTest, tree_[left].span,
+          "`" + sema_.report.type_text(reference) + "` cannot take what a type test finds",
+          "use a variable of an interface, or a reference to a function block or class");
     return result;
   }
   std::optional<Target> to;

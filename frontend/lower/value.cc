@@ -10,8 +10,8 @@ namespace {
 
 // Existing sources take the milliseconds of a TIME, or the seconds of a DT, through a POINTER TO
 // DWORD; here they would get something else.
-void warn_of_half_times(Sema& sema, ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
-  const ir::TypeTable& types = sema.program.types;
+void warn_of_half_times(const Phase& phase, ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
+  const ir::TypeTable& types = phase.sema().program.types;
   if (!types.is_reference(from) || !types.is_reference(to)) return;
   ir::TypeId source = types[without_range(types, from)].base;
   ir::TypeId target = types[without_range(types, to)].base;
@@ -21,10 +21,11 @@ void warn_of_half_times(Sema& sema, ir::TypeId from, ir::TypeId to, base::Source
   if (!number.bits && !number.integer) return;
   uint32_t bytes = ir::scalar_size(types.scalar(target));
   if (bytes != 2 && bytes != 4) return;
-  sema.warning(DiagnosticCode::kImplicitNarrowing, span,
-               "`" + sema.report.type_text(source) + "` is 64 bits of nanoseconds; a `" +
-                   sema.report.type_text(target) + "` behind its address is a part of them",
-               "convert the value, for example with TO_" + sema.report.type_text(target));
+  phase.warning(DiagnosticCode::kImplicitNarrowing, span,
+                "`" + phase.sema().report.type_text(source) + "` is 64 bits of nanoseconds; a `" +
+                    phase.sema().report.type_text(target) +
+                    "` behind its address is a part of them",
+                "convert the value, for example with TO_" + phase.sema().report.type_text(target));
 }
 
 bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
@@ -63,13 +64,13 @@ bool Body::is_distance(ExprId id) {
   const Expr& expr = tree_[id];
   if (expr.kind != ExprKind::kBinary) return false;
   if (expr.binary != BinaryOp::kAdd && expr.binary != BinaryOp::kSub) return false;
-  if (!types().is_reference(sema_.infer(expr.operand).type)) return false;
-  if (expr.binary == BinaryOp::kSub && !sema_.infer(expr.right).constant) return true;
+  if (!types().is_reference(infer(expr.operand).type)) return false;
+  if (expr.binary == BinaryOp::kSub && !infer(expr.right).constant) return true;
   return is_distance(expr.operand);
 }
 
 ir::ValueId Body::value(ExprId id, ir::TypeId target) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   const Expr& expr = tree_[id];
   if (!note.type.valid() || !target.valid()) return zero(target);
   if (types()[target].kind == ir::Kind::kReferenceTo) return reference_value(id, target);
@@ -78,22 +79,22 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
     return interface_value(id, target);
   }
   if (is_known(note)) {
-    auto bits = sema_.ask<Constants>().fold_bits(
-        id, target, evaluating_ ? Known::kInitially : Known::kConstant);
+    auto bits =
+        ask<Constants>().fold_bits(id, target, evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     return bits ? build_.constant(scalar(target), *bits) : zero(target);
   }
   ir::TypeId own = own_type(note, target);
   if (!types().is_scalar(own)) {
-    sema_.error(DiagnosticCode::kTypeMismatch, expr.span,
-                "`" + sema_.report.type_text(own) + "` does not go with `" +
-                    sema_.report.type_text(target) + "`");
+    error(DiagnosticCode::kTypeMismatch, expr.span,
+          "`" + sema_.report.type_text(own) + "` does not go with `" +
+              sema_.report.type_text(target) + "`");
     return zero(target);
   }
-  warn_of_half_times(sema_, note.type, target, expr.span);
+  warn_of_half_times(*this, note.type, target, expr.span);
   if (note.width == Width::kWide && !types().is_reference(target)) return stored(id, target);
   if (note.width == Width::kWraps && is_wider(types(), target, own))
-    check_wrapped(sema_, id, "widened");
+    check_wrapped(*this, id, "widened");
   if (types().is_reference(own) && !types().is_reference(target) && is_distance(id)) {
     ir::TypeId number = elementary(ir::Kind::kDword);
     return convert({convert_reference({emit(id, own), own}, number, expr.span), number}, target,
@@ -103,7 +104,7 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
 }
 
 Typed Body::natural(ExprId id) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   ir::TypeId type = without_range(types(), note.type);
   if (!type.valid() || !types().is_scalar(type)) {
     return {zero({}), elementary(ir::Kind::kDint)};
@@ -118,9 +119,9 @@ Typed Body::natural(ExprId id) {
 ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
   const Expr& expr = tree_[id];
   set_line(expr.span);
-  if (sema_.infer(id).bit_size != 0) return emit_bit(id);
+  if (infer(id).bit_size != 0) return emit_bit(id);
   if (is_character(id)) return emit_character(expr);
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (note.property != kNoPou && !note.reference.valid()) return read_property(id).value;
   switch (expr.kind) {
     case ExprKind::kThis:
@@ -149,7 +150,7 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
 }
 
 ir::ValueId Body::emit_bit(ExprId id) {
-  const Note part = sema_.infer(id);
+  const Note part = infer(id);
   uint32_t offset = part.bit_number * part.bit_size;
   if (part.view) {
     ir::Place byte = view_place(id);
@@ -172,7 +173,7 @@ ir::ValueId Body::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset,
   if (size != 1) {
     ir::DirectAddress part;
     part.bit_size = size;
-    return machine_convert(bits, machine, scalar(sema_.ask<Variables>().type_of_direct(part)));
+    return machine_convert(bits, machine, scalar(ask<Variables>().type_of_direct(part)));
   }
   bits = build_.binary(ir::Op::kAnd, machine, bits, build_.constant(machine, 1));
   return build_.unary(ir::Op::kToBool, ir::Scalar::kBool, bits);

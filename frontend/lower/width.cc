@@ -15,10 +15,10 @@ bool divides(BinaryOp op) { return op == BinaryOp::kDiv || op == BinaryOp::kMod;
 
 // Has a quotient in `type` the bits that the one of DINTs has, in `machine`? The most negative
 // number divided by -1 is itself in its own width.
-bool divides_in(Sema& sema, const Expr& expr, ir::TypeId type, ir::Scalar machine) {
-  const ir::TypeTable& types = sema.program.types;
+bool divides_in(const Phase& phase, const Expr& expr, ir::TypeId type, ir::Scalar machine) {
+  const ir::TypeTable& types = phase.sema().program.types;
   const auto own = [&](ExprId id) {
-    const Note& note = sema.infer(id);
+    const Note& note = phase.infer(id);
     const bool same = without_range(types, note.type) == without_range(types, type);
     return note.width != Width::kWide && (same || note.flex == Flex::kInteger);
   };
@@ -30,14 +30,14 @@ bool divides_in(Sema& sema, const Expr& expr, ir::TypeId type, ir::Scalar machin
 }  // namespace
 
 ir::ValueId Body::stored(ExprId sum, ir::TypeId target) {
-  const Note& note = sema_.infer(sum);
+  const Note& note = infer(sum);
   const base::SourceSpan span = tree_[sum].span;
   if (!fits(note.type, target, span)) return zero(target);
   const Traits to = traits_of(types(), target);
   const bool range = types()[target].kind == ir::Kind::kSubrange;
   const Expr& expr = tree_[sum];
   const bool quotient = range && expr.kind == ExprKind::kBinary && divides(expr.binary) &&
-                        divides_in(sema_, expr, note.type, scalar(target));
+                        divides_in(*this, expr, note.type, scalar(target));
   if (quotient) return convert({emit(sum, note.type), note.type}, target, span);
   const bool low_bits = !range && (to.integer || to.bits) && ir::scalar_size(scalar(target)) < 4;
   const ir::TypeId dint = elementary(ir::Kind::kDint);
@@ -55,12 +55,12 @@ ir::ValueId Body::stored(ExprId sum, ir::TypeId target) {
 
 // An operand, or a tree of operators, in `type`: nobody wants other bits than the low ones of that.
 ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   const Expr& expr = tree_[id];
   const ir::Scalar machine = scalar(type);
   if (is_known(note)) {
-    const auto known = sema_.ask<Constants>().fold(
-        id, elementary(ir::Kind::kDint), evaluating_ ? Known::kInitially : Known::kConstant);
+    const auto known = ask<Constants>().fold(id, elementary(ir::Kind::kDint),
+                                             evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     const Wide number = known ? wrap_to(machine, known->integer) : 0;
     return build_.constant(machine, static_cast<uint64_t>(number));
@@ -83,7 +83,7 @@ ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
   }
   // Quotients need all bits of what is divided.
   const bool exact = divides(expr.binary) && machine != ir::Scalar::kI32;
-  if (exact && !divides_in(sema_, expr, note.type, machine)) {
+  if (exact && !divides_in(*this, expr, note.type, machine)) {
     return machine_convert(computed_in(id, dint), ir::Scalar::kI32, machine);
   }
   const ir::TypeId in = exact ? without_range(types(), note.type) : type;

@@ -3,6 +3,7 @@
 
 #include "frontend/lower/body.h"
 #include "frontend/sema/common_uses.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/variables.h"
 
 namespace frontend {
@@ -19,15 +20,15 @@ bool is_input(const Variable& variable) {
 // Does it lie where others may be led to? What must not be written does not: an image says of no
 // in-out that it is only read.
 bool Body::has_address(ExprId id) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (note.reference.valid()) return true;
   if (note.property != kNoPou || is_known(note) || note.bit_size != 0 || is_character(id) ||
-      sema_.ask<Variables>().holds_input(note.type)) {
+      ask<Variables>().holds_input(note.type)) {
     return false;
   }
   if (note.variable.valid()) {
-    const Variable* variable = &sema_.resolve(note.variable);
-    if (variable->external.valid()) variable = &sema_.resolve(variable->external);
+    const Variable* variable = &resolve(note.variable);
+    if (variable->external.valid()) variable = &resolve(variable->external);
     if (has_known_value(*variable) || is_input(*variable)) return false;
   }
   const Expr& expr = tree_[id];
@@ -40,14 +41,14 @@ bool Body::has_address(ExprId id) {
       return tree_.directs[expr.number].address.area != ir::DirectArea::kInput;
     case ExprKind::kMember: {
       if (note.variable.valid()) return true;
-      const PouInfo* block = sema_.declared.pou_of(sema_.infer(expr.operand).type);
+      const PouInfo* block = sema_.declared.pou_of(infer(expr.operand).type);
       if (block == nullptr) return !is_input_field(expr) && has_address(expr.operand);
-      const VarId variable = sema_.objects.find_parameter(*block, expr.name.text);
-      return variable.valid() && !has_known_value(sema_.resolve(variable)) &&
-             !is_input(sema_.resolve(variable));
+      const VarId variable = ask<Objects>().find_parameter(*block, expr.name.text);
+      return variable.valid() && !has_known_value(resolve(variable)) &&
+             !is_input(resolve(variable));
     }
     case ExprKind::kIndex:
-      return types().is_reference(sema_.infer(expr.operand).type) || has_address(expr.operand);
+      return types().is_reference(infer(expr.operand).type) || has_address(expr.operand);
     default:
       return false;
   }
@@ -55,11 +56,11 @@ bool Body::has_address(ExprId id) {
 
 bool Body::check_writable(ExprId id) {
   const Expr& expr = tree_[id];
-  if (sema_.infer(id).property != kNoPou) {
-    if (sema_.infer(id).reference.valid()) return true;  // what it leads to
-    sema_.error(DiagnosticCode::kPropertyAccess, expr.span,
-                "`" + std::string(expr.name.text) + "` is a property: its value has no place",
-                "assign the property as a whole");
+  if (infer(id).property != kNoPou) {
+    if (infer(id).reference.valid()) return true;  // what it leads to
+    error(DiagnosticCode::kPropertyAccess, expr.span,
+          "`" + std::string(expr.name.text) + "` is a property: its value has no place",
+          "assign the property as a whole");
     return false;
   }
   switch (expr.kind) {
@@ -67,46 +68,45 @@ bool Body::check_writable(ExprId id) {
       return check_writable_name(expr);
     case ExprKind::kDirect: {
       const ir::DirectAddress address = tree_.directs[expr.number].address;
-      note_output(address, sema_.infer(id).type, expr.span);
+      note_output(address, infer(id).type, expr.span);
       if (address.area != ir::DirectArea::kInput || info_.test) return true;
-      sema_.error(DiagnosticCode::kAssignToInput, expr.span,
-                  "`" + std::string(expr.name.text) + "` is an input of the process image");
+      error(DiagnosticCode::kAssignToInput, expr.span,
+            "`" + std::string(expr.name.text) + "` is an input of the process image");
       return false;
     }
     case ExprKind::kMember: {
-      if (VarId global = sema_.infer(id).variable; global.valid()) {
+      if (VarId global = infer(id).variable; global.valid()) {
         return check_writable_variable(expr, global);
       }
-      const PouInfo* block = sema_.declared.pou_of(sema_.infer(expr.operand).type);
+      const PouInfo* block = sema_.declared.pou_of(infer(expr.operand).type);
       if (block == nullptr) return check_writable_field(expr) && check_writable(expr.operand);
-      const Variable& variable =
-          sema_.resolve(sema_.objects.find_parameter(*block, expr.name.text));
+      const Variable& variable = resolve(ask<Objects>().find_parameter(*block, expr.name.text));
       if (variable.section == VarSection::kInput) return true;
       if (variable.section != VarSection::kOutput || info_.test)
-        return check_writable_variable(expr, sema_.objects.find_parameter(*block, expr.name.text));
-      sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                  "`" + std::string(expr.name.text) + "` is an output of `" +
-                      std::string(block->decl->name.text) + "`; only the block itself writes it");
+        return check_writable_variable(expr, ask<Objects>().find_parameter(*block, expr.name.text));
+      error(DiagnosticCode::kNotAssignable, expr.span,
+            "`" + std::string(expr.name.text) + "` is an output of `" +
+                std::string(block->decl->name.text) + "`; only the block itself writes it");
       return false;
     }
     case ExprKind::kDeref:
     case ExprKind::kResult:
       return true;
     case ExprKind::kIndex:
-      if (types().is_reference(sema_.infer(expr.operand).type)) return true;
+      if (types().is_reference(infer(expr.operand).type)) return true;
       return check_writable(expr.operand);
     case ExprKind::kBit:
       return check_writable(expr.operand);
     default:
-      if (sema_.infer(id).reference.valid()) return true;  // what a method returns
-      sema_.error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
+      if (infer(id).reference.valid()) return true;  // what a method returns
+      error(DiagnosticCode::kNotAssignable, expr.span, "this is a value, not a variable");
       return false;
   }
 }
 
 // A member of a structure that stands at %I.
 bool Body::is_input_field(const Expr& expr) {
-  ir::TypeId structure = sema_.infer(expr.operand).type;
+  ir::TypeId structure = infer(expr.operand).type;
   int32_t member = sema_.declared.find_member(structure, expr.name.text);
   if (member < 0) return false;
   const ir::Member& field = types()[structure].members[static_cast<size_t>(member)];
@@ -115,43 +115,42 @@ bool Body::is_input_field(const Expr& expr) {
 
 bool Body::check_writable_field(const Expr& expr) {
   if (!is_input_field(expr) || info_.test) return true;
-  sema_.error(DiagnosticCode::kAssignToInput, expr.span,
-              "`" + std::string(expr.name.text) + "` is an input",
-              "copy it to a variable of its own");
+  error(DiagnosticCode::kAssignToInput, expr.span,
+        "`" + std::string(expr.name.text) + "` is an input", "copy it to a variable of its own");
   return false;
 }
 
 bool Body::check_writable_name(const Expr& expr) {
-  VarId id = sema_.ask<Variables>().find_variable(expr);
+  VarId id = ask<Variables>().find_variable(expr);
   if (id.valid()) return check_writable_variable(expr, id);
-  sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-              "`" + std::string(expr.name.text) + "` is not a variable");
+  error(DiagnosticCode::kNotAssignable, expr.span,
+        "`" + std::string(expr.name.text) + "` is not a variable");
   return false;
 }
 
 bool Body::check_writable_variable(const Expr& expr, VarId id) {
   const auto name = [&expr] { return "`" + std::string(expr.name.text) + "`"; };
-  const Variable* variable = &sema_.resolve(id);
+  const Variable* variable = &resolve(id);
   bool constant = variable->constant;
   if (variable->external.valid()) {
     id = variable->external;
-    variable = &sema_.resolve(id);
+    variable = &resolve(id);
   }
   if (variable->decl != nullptr && variable->decl->implied) {
-    sema_.error(DiagnosticCode::kNotAssignable, expr.span,
-                name() + " belongs to the chart, which alone changes it",
-                "steps change by transitions, actions by the steps that use them");
+    error(DiagnosticCode::kNotAssignable, expr.span,
+          name() + " belongs to the chart, which alone changes it",
+          "steps change by transitions, actions by the steps that use them");
     return false;
   }
   if (constant || variable->constant) {
-    sema_.error(DiagnosticCode::kAssignToConstant, expr.span, name() + " is a constant");
+    error(DiagnosticCode::kAssignToConstant, expr.span, name() + " is a constant");
     return false;
   }
   bool own_input =
       variable->section == VarSection::kInput && sema_.options.dialect == Dialect::kIec;
   if ((is_input(*variable) || own_input) && !info_.test) {
-    sema_.error(DiagnosticCode::kAssignToInput, expr.span, name() + " is an input",
-                "copy it to a variable of its own");
+    error(DiagnosticCode::kAssignToInput, expr.span, name() + " is an input",
+          "copy it to a variable of its own");
     return false;
   }
   sema_.mark_written(id);
@@ -160,8 +159,8 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
     note_output(variable->decl->address, variable->type, expr.span);
   }
   if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
-    sema_.warning(DiagnosticCode::kForVariableAssigned, expr.span,
-                  name() + " counts the surrounding FOR loop");
+    warning(DiagnosticCode::kForVariableAssigned, expr.span,
+            name() + " counts the surrounding FOR loop");
   }
   return true;
 }

@@ -1,5 +1,6 @@
 // What names in code mean.
 #include "frontend/questions/indexer.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/variables.h"
 
 namespace frontend::questions {
@@ -53,7 +54,7 @@ std::optional<Symbol> Indexer::in_block(uint32_t block, const Name& name) {
       return variable_symbol(found->second);
     }
   }
-  const Objects::Found found = sema_.objects.find_code(block, name.text);
+  const Objects::Found found = Objects(sema_, scope_).find_code(block, name.text);
   if (found.owner == kNoPou) return std::nullopt;
   const MemberCode& code = found.code;
   const uint32_t number = code.method != kNoPou   ? code.method
@@ -73,15 +74,15 @@ std::optional<Symbol> Indexer::plain_name(const Expr& expr, const Note& note) {
   if (literal) {
     if (auto found = enumerator_symbol(note.type, expr.name.text)) return found;
   }
-  return declaration_named(sema_.namespaces.find(NameSort::kDeclaration, expr));
+  return declaration_named(sema_.namespaces.find(NameSort::kDeclaration, scope_, expr));
 }
 
 // The block or interface whose members stand after the dot.
 uint32_t Indexer::block_before_dot(ExprId operand) {
   const Expr& expr = tree_[operand];
   const uint32_t own = sema_.declared.block_of(scope_);
-  if (sema_.objects.is_own(expr)) {
-    const bool super = sema_.objects.is_super(expr);
+  if (Objects(sema_, scope_).is_own(expr)) {
+    const bool super = Objects(sema_, scope_).is_super(expr);
     return own == kNoPou || !super ? own : sema_.declared.pous[own].base;
   }
   ir::TypeId type = known(operand).type;
@@ -102,10 +103,10 @@ std::optional<Symbol> Indexer::member(const Expr& expr, const Note& note) {
     if (auto found = enumerator_symbol(note.type, expr.name.text)) return found;
   }
   if (before.valid()) return variable_symbol(Variables(sema_, scope_).find_variable(expr.name));
-  if (const VarId global = sema_.namespaces.find_global(expr); global.valid()) {
+  if (const VarId global = sema_.namespaces.find_global(scope_, expr); global.valid()) {
     return variable_symbol(global);
   }
-  return declaration_named(sema_.namespaces.find(NameSort::kDeclaration, expr));
+  return declaration_named(sema_.namespaces.find(NameSort::kDeclaration, scope_, expr));
 }
 
 // What is called, by the head of the call: a POU with parameters.
@@ -114,10 +115,10 @@ const PouInfo* Indexer::callee(const Expr& head) {
   if (head.kind == ExprKind::kName) symbol = plain_name(head, Note());
   if (head.kind == ExprKind::kMember) symbol = member(head, Note());
   if (symbol && symbol->pou != kNoPou) return &sema_.declared.pous[symbol->pou];
-  if (!symbol && !sema_.objects.is_own(head)) return nullptr;
+  if (!symbol && !Objects(sema_, scope_).is_own(head)) return nullptr;
   if (symbol) return symbol->type.valid() ? sema_.declared.pou_of(symbol->type) : nullptr;
   const uint32_t own = sema_.declared.block_of(scope_);
-  const bool super = own != kNoPou && sema_.objects.is_super(head);
+  const bool super = own != kNoPou && Objects(sema_, scope_).is_super(head);
   const uint32_t number = super ? sema_.declared.pous[own].base : own;
   return number == kNoPou ? nullptr : &sema_.declared.pous[number];
 }
@@ -134,7 +135,7 @@ void Indexer::call_arguments(const Expr& call) {
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
     if (arg.name.empty()) continue;
-    add(arg.name.span, variable_symbol(sema_.objects.find_parameter(*pou, arg.name.text)),
+    add(arg.name.span, variable_symbol(Objects(sema_, scope_).find_parameter(*pou, arg.name.text)),
         arg.output ? Role::kRead : Role::kWritten);
   }
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "frontend/questions/indexer.h"
+#include "frontend/sema/objects.h"
 
 namespace frontend::questions {
 
@@ -60,7 +61,6 @@ void Indexer::pou(const PouDecl& decl) {
   const auto found = infos_.find(&decl);
   const PouScope before = scope_;
   if (found != infos_.end()) scope_ = PouScope(*found->second);
-  const Sema::Within within(sema_, scope_.number());
   if (found != infos_.end()) {
     add(decl.name.span, pou_symbol(*found->second), Role::kDeclared);
   }
@@ -125,7 +125,7 @@ void Indexer::initial(ExprId init, ir::TypeId type) {
     if (!arg.name.empty() && type.valid()) {
       part = block == nullptr
                  ? field_symbol(type, arg.name)
-                 : variable_symbol(sema_.objects.find_parameter(*block, arg.name.text));
+                 : variable_symbol(Objects(sema_, scope_).find_parameter(*block, arg.name.text));
     }
     add(arg.name.span, part, Role::kWritten);
     initial(arg.value, part ? part->type : ir::TypeId());

@@ -1,4 +1,5 @@
 #include "frontend/questions/questions.h"
+#include "frontend/sema/objects.h"
 
 #include "frontend/questions/documentation.h"
 #include "frontend/questions/walk.h"
@@ -185,7 +186,7 @@ std::string Questions::documentation_of(const Symbol& symbol) const {
 void Questions::describe_call(const PouInfo& info, Signature& out) const {
   const auto& variables = sema_.declared.variables;
   std::string inside;
-  for (const VarId id : sema_.objects.variables_of(info)) {
+  for (const VarId id : Objects(sema_).variables_of(info)) {
     const Variable& variable = variables[id.index];
     if (!is_parameter(variable.section) || id == info.result || variable.hidden) continue;
     if (variable.decl == nullptr) continue;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/shared_addresses.h"
 #include "ir/types/address_text.h"
@@ -127,27 +128,27 @@ void SharedAddresses::check_instances() const {
     uint64_t instances = 0;
     for (const PouInfo& other : sema_.declared.pous) {
       const bool is_one = other.self.valid() && other.owner == kNoPou &&
-                          sema_.objects.extends(other.number, pou->number);
+                          ask<Objects>().extends(other.number, pou->number);
       if (is_one) instances += counts.of(other.self);
     }
     if (instances < InstanceCounts::kMany) continue;
     const Variable& variable = sema_.declared.variables[id.index];
-    sema_.error(DiagnosticCode::kBadAddress, variable.name.span,
-                "`" + std::string(pou->name) + "." + std::string(variable.name.text) + "` AT " +
-                    ir::address_text(variable.decl->address) +
-                    " is one place for several instances, but each has a variable of its own",
-                "write AT %M* or %Q* and give each instance its address in VAR_CONFIG, or declare "
-                "it in VAR_GLOBAL");
+    error(DiagnosticCode::kBadAddress, variable.name.span,
+          "`" + std::string(pou->name) + "." + std::string(variable.name.text) + "` AT " +
+              ir::address_text(variable.decl->address) +
+              " is one place for several instances, but each has a variable of its own",
+          "write AT %M* or %Q* and give each instance its address in VAR_CONFIG, or declare "
+          "it in VAR_GLOBAL");
   }
 }
 
 void SharedAddresses::report_configured(const Located& one, const Located& other) const {
   const uint32_t line = sema_.sources.locate(other.span.begin).line;
-  sema_.error(DiagnosticCode::kBadAddress, one.span,
-              "`" + one.name + "` AT " + ir::address_text(one.address) + " lies on bytes of `" +
-                  other.name + "` AT " + ir::address_text(other.address) + " (line " +
-                  std::to_string(line) + "), but cannot share them: it lies in an instance",
-              "give one of them another address");
+  error(DiagnosticCode::kBadAddress, one.span,
+        "`" + one.name + "` AT " + ir::address_text(one.address) + " lies on bytes of `" +
+            other.name + "` AT " + ir::address_text(other.address) + " (line " +
+            std::to_string(line) + "), but cannot share them: it lies in an instance",
+        "give one of them another address");
 }
 
 // In tests nothing copies an input into all variables that have its address.
@@ -158,9 +159,9 @@ void SharedAddresses::check_inputs_in_tests(const std::vector<Located>& all) con
     for (const Located& other : all) {
       const bool itself = other.span.begin.offset == direct.span.begin.offset;
       if (itself || !meets(other.address, direct.address)) continue;
-      sema_.error(DiagnosticCode::kBadAddress, direct.span,
-                  "`" + other.name + "` has this input, too, and is not set by its address",
-                  "name the variable: `" + other.name + "`, `instance." + other.name + "`");
+      error(DiagnosticCode::kBadAddress, direct.span,
+            "`" + other.name + "` has this input, too, and is not set by its address",
+            "name the variable: `" + other.name + "`, `instance." + other.name + "`");
       break;
     }
   }

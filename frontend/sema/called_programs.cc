@@ -64,7 +64,7 @@ void Interfaces::finish_programs() {
                                          info.self,
                                          ir::kNoTask,
                                          {},
-                                         OldNames(sema_).add(std::string(info.old_name))});
+                                         ask<OldNames>().add(std::string(info.old_name))});
     } else if (instance->type != info.self) {
       error(DiagnosticCode::kDuplicateName, info.decl->name.span,
             "the program instance `" + instance->name +

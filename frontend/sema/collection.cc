@@ -2,6 +2,7 @@
 #include "frontend/sema/collection.h"
 #include "frontend/sema/configuration.h"
 #include "frontend/sema/interfaces.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/rename_rules.h"
 #include "frontend/sema/sema.h"
@@ -61,7 +62,7 @@ void Collection::collect() {
     }
   }
   sema_.namespaces.check();
-  sema_.objects.inherit();
+  ask<Objects>().inherit();
 }
 
 void Collection::collect_types() {
@@ -211,7 +212,7 @@ uint32_t Collection::add_pou(const PouDecl& decl, bool of_library, std::string_v
     ir::Type type;
     type.kind = instance_kind(decl.kind);
     type.name = name;
-    type.old_name = OldNames(sema_).add(std::string(info.old_name));
+    type.old_name = ask<OldNames>().add(std::string(info.old_name));
     if (info.as_block) type.kind = ir::Kind::kFunctionBlock;
     info.self = sema_.program.types.declare(std::move(type));
     sema_.declared.pou_by_type.emplace(info.self, number);
@@ -228,7 +229,7 @@ void Collection::add_code(PouInfo& info, std::string name) {
   pou.name = std::move(name);
   pou.kind = info.as_block ? ir::PouKind::kFunctionBlock : ir_kind(info.decl->kind);
   pou.self = info.self;
-  pou.recursion_depth = sema_.objects.recursion_depth(*info.decl);
+  pou.recursion_depth = ask<Objects>().recursion_depth(*info.decl);
 }
 
 void Collection::collect_interface(uint32_t number) {
@@ -245,7 +246,7 @@ void Collection::collect_interface(uint32_t number) {
     if (id.valid()) info.variables.push_back(id);
     if (decl.kind != PouKind::kSetter) info.result = id;
   }
-  sema_.objects.collect(number);
+  ask<Objects>().collect(number);
   number_variables(info);
 }
 
@@ -355,7 +356,7 @@ bool Collection::use_library(std::string_view name) {
   if (found == sema_.library.pous.end() || sema_.declared.pou_names.contains(name)) return false;
   uint32_t number = add_pou(*found->second, true, found->first);
   if (sema_.declared.complete)
-    sema_.ask<Interfaces>().resolve_interface(number);  // a function first met in a body
+    ask<Interfaces>().resolve_interface(number);  // a function first met in a body
   return true;
 }
 

@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 #include "ir/program/ir.h"
 #include "ir/types/layout.h"
 
 namespace frontend {
-
-class Sema;
 
 struct CommonGlobal {
   std::string name;
@@ -32,9 +30,9 @@ struct ResourceUses {
   std::vector<bool> other_code;                  // by PouId: only other resources can reach it
 };
 
-class CommonUses {
+class CommonUses : public Phase {
  public:
-  explicit CommonUses(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   // Each byte of %Q has one writer among the tasks (E5003).
   void check_output_tasks();
@@ -52,8 +50,6 @@ class CommonUses {
                               std::unordered_map<uint32_t, uint32_t>& owner);
   void add_outputs(const std::vector<OutputWrite>& writes, const ir::Layouts& natural,
                    ResourceUses& out) const;
-
-  Sema& sema_;
 };
 
 // One writer for each global and each output (E5010, E5003); W0014 for what is not exchanged.

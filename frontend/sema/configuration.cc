@@ -8,9 +8,9 @@
 #include "frontend/sema/instance_paths.h"
 #include "frontend/sema/interfaces.h"
 #include "frontend/sema/old_names.h"
+#include "frontend/sema/phase.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
-#include "frontend/sema/sema.h"
 #include "frontend/sema/task_attributes.h"
 #include "frontend/sema/test_build.h"
 
@@ -25,11 +25,11 @@ ir::Task main_task() {
 }
 
 // By which people address them, and folders are called.
-bool check_resource_names(Sema& sema, const ConfigDecl& config) {
+bool check_resource_names(const Phase& phase, const ConfigDecl& config) {
   if (config.resources.size() < 2) return true;
   if (config.resources.size() > base::kMaxResources) {
-    sema.error(DiagnosticCode::kTooComplex, config.resources[base::kMaxResources].name.span,
-               "more than " + std::to_string(base::kMaxResources) + " RESOURCEs");
+    phase.error(DiagnosticCode::kTooComplex, config.resources[base::kMaxResources].name.span,
+                "more than " + std::to_string(base::kMaxResources) + " RESOURCEs");
   }
   bool good = true;
   NameMap<const ResourceDecl*> names;
@@ -39,13 +39,13 @@ bool check_resource_names(Sema& sema, const ConfigDecl& config) {
     good = good && first;
     if (first) continue;
     if (resource.name.empty()) {
-      sema.error(DiagnosticCode::kTwoConfigurations, config.name.span,
-                 "CONFIGURATION " + quoted(config.name) +
-                     " has tasks or programs of its own beside its RESOURCEs",
-                 "move them into a RESOURCE");
+      phase.error(DiagnosticCode::kTwoConfigurations, config.name.span,
+                  "CONFIGURATION " + quoted(config.name) +
+                      " has tasks or programs of its own beside its RESOURCEs",
+                  "move them into a RESOURCE");
     } else {
-      sema.error(DiagnosticCode::kDuplicateName, resource.name.span,
-                 "RESOURCE " + quoted(resource.name) + " is declared twice");
+      phase.error(DiagnosticCode::kDuplicateName, resource.name.span,
+                  "RESOURCE " + quoted(resource.name) + " is declared twice");
     }
   }
   return good;
@@ -62,7 +62,7 @@ void Configuration::choose_resource() {
           "a second CONFIGURATION " + quoted(sema_.tree.configs[1].name));
   }
   NearestName nearest(sema_.options.resource);
-  const bool named = check_resource_names(sema_, config);
+  const bool named = check_resource_names(*this, config);
   for (const ResourceDecl& resource : config.resources) {
     nearest.offer(resource.name.text);
     bool wanted =
@@ -92,8 +92,8 @@ void Configuration::configure() {
     sema_.program.name += "." + std::string(sema_.declared.resource->name.text);
   }
   if (sema_.declared.resource != nullptr) {
-    apply_schedule(sema_, config.name, config.attributes);
-    apply_schedule(sema_, sema_.declared.resource->name, sema_.declared.resource->attributes);
+    apply_schedule(*this, config.name, config.attributes);
+    apply_schedule(*this, sema_.declared.resource->name, sema_.declared.resource->attributes);
     configure_resource(*sema_.declared.resource);
   }
   if (sema_.declared.resource == nullptr || sema_.declared.resource->programs.empty()) {
@@ -116,7 +116,7 @@ void Configuration::default_configuration() {
                                        pou.self,
                                        0,
                                        {},
-                                       OldNames(sema_).add(std::string(pou.old_name))});
+                                       ask<OldNames>().add(std::string(pou.old_name))});
   }
   InstancePaths paths(sema_);
   paths.configure(sema_.tree.globals);
@@ -129,7 +129,7 @@ void Configuration::configure_resource(const ResourceDecl& resource) {
     return;
   }
   for (const TaskDecl& task : resource.tasks) add_task(task);
-  check_base_cycle(sema_, resource.tasks);
+  check_base_cycle(*this, resource.tasks);
   for (const ProgramDecl& decl : resource.programs) add_instance(decl, resource);
 }
 
@@ -168,7 +168,7 @@ void Configuration::add_instance(const ProgramDecl& decl, const ResourceDecl& re
   }
   ir::ProgramInstance instance;
   instance.name = decl.name.text;
-  instance.old_name = OldNames(sema_).of_rule(decl.attributes);
+  instance.old_name = ask<OldNames>().of_rule(decl.attributes);
   if (decl.task.empty()) {
     if (sema_.program.tasks.empty()) sema_.program.tasks.push_back(main_task());
   } else if (auto task = find_task(decl.task)) {
@@ -239,8 +239,7 @@ ir::ConstId Configuration::program_arguments(const ProgramDecl& decl, const PouI
       connections.push_back({found->second, decl.args.first + i});
       continue;
     }
-    ir::ConstId init =
-        sema_.ask<Constants>().initial_value(arg.value, variable->type, variable->init);
+    ir::ConstId init = ask<Constants>().initial_value(arg.value, variable->type, variable->init);
     if (init.valid()) value.elements.push_back({variable->index, 1, init});
   }
   if (value.elements.empty()) return {};
@@ -285,14 +284,14 @@ uint32_t Configuration::clone_program(uint32_t original, const ProgramDecl& decl
   type.name = code.name;
   const std::string_view before = sema_.declared.pous[original].old_name;
   if (!before.empty() || !old_instance.empty()) {
-    type.old_name = OldNames(sema_).of_clone(info.name, before, instance.text, old_instance);
+    type.old_name = ask<OldNames>().of_clone(info.name, before, instance.text, old_instance);
   }
   info.self = code.self = sema_.program.types.declare(std::move(type));
   sema_.declared.pou_by_type.emplace(info.self, number);
   sema_.program.pous.push_back(std::move(code));
   ask<Collection>().collect_interface(number);
   for (uint32_t i = number; i < sema_.declared.pous.size(); ++i)
-    sema_.ask<Interfaces>().resolve_interface(i);  // its methods too
+    ask<Interfaces>().resolve_interface(i);  // its methods too
   return number;
 }
 

@@ -36,7 +36,8 @@ class Sema;
 // The value of a call of a standard function, or of a power, whose operands are known;
 // `context` as for Sema::fold. Implemented by lower/constant_evaluation.cc, which knows what calls
 // do.
-std::optional<Constant> evaluate_constant(Sema& sema, ExprId expr, ir::TypeId context);
+std::optional<Constant> evaluate_constant(Sema& sema, const PouScope& scope, ExprId expr,
+                                          ir::TypeId context);
 // A scalar of `type` from its bits.
 Constant scalar_constant(const ir::TypeTable& types, ir::TypeId type, uint64_t bits);
 

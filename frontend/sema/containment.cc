@@ -19,10 +19,10 @@ struct Depth {
 };
 
 // Depth first, with a stack of its own: chains of types may be long.
-class Containment {
+class Containment : private Phase {
  public:
   explicit Containment(Sema& sema)
-      : sema_(sema),
+      : Phase(sema),
         types_(sema.program.types),
         marks_(types_.size(), Mark::kWhite),
         depths_(types_.size()) {}
@@ -120,10 +120,9 @@ class Containment {
     for (const TypeDecl& decl : sema_.tree.types) {
       if (ir::same_name(decl.name.text, types_[type].name)) span = decl.name.span;
     }
-    sema_.error(code, span, "`" + sema_.report.type_text(type) + "` " + what, help);
+    error(code, span, "`" + sema_.report.type_text(type) + "` " + what, help);
   }
 
-  Sema& sema_;
   const ir::TypeTable& types_;
   std::vector<Mark> marks_;
   std::vector<Depth> depths_;

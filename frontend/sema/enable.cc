@@ -1,5 +1,6 @@
 // EN and ENO among the arguments of a call.
 #include "frontend/sema/calls.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -8,7 +9,7 @@ namespace frontend {
 bool Calls::is_enable(const Arg& arg, const PouInfo* callee) const {
   bool named = ir::same_name(arg.name.text, "EN") || ir::same_name(arg.name.text, "ENO");
   return named &&
-         (callee == nullptr || !sema_.objects.find_parameter(*callee, arg.name.text).valid());
+         (callee == nullptr || !ask<Objects>().find_parameter(*callee, arg.name.text).valid());
 }
 
 std::vector<const Arg*> Calls::plain_arguments(const Expr& call, const PouInfo* callee) const {

@@ -14,11 +14,11 @@
 namespace frontend {
 std::optional<Constant> Folder::fold(ExprId id) {
   const Expr& expr = sema_.tree[id];
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.type.valid()) return std::nullopt;
   if (note.known < least_) {
-    sema_.error(DiagnosticCode::kNotConstant, expr.span, "this has to be known when compiling",
-                "use literals, constants and standard functions of them");
+    error(DiagnosticCode::kNotConstant, expr.span, "this has to be known when compiling",
+          "use literals, constants and standard functions of them");
     return std::nullopt;
   }
   switch (expr.kind) {
@@ -46,7 +46,7 @@ std::optional<Constant> Folder::fold(ExprId id) {
 }
 
 std::optional<Constant> Folder::member(ExprId id, const Expr& expr) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (note.bit_size != 0 && !note.view) return bits_of(id, expr);
   bool literal = note.constant && !note.variable.valid();
   return literal ? name(id, expr) : part(id);
@@ -54,7 +54,7 @@ std::optional<Constant> Folder::member(ExprId id, const Expr& expr) {
 
 // A variable or part of one, with its initial value.
 std::optional<Constant> Folder::part(ExprId id) {
-  auto part = sema_.ask<Constants>().initial_part(id);
+  auto part = ask<Constants>().initial_part(id);
   if (!part) return std::nullopt;
   const ir::TypeTable& types = sema_.program.types;
   ir::ConstId init = part->init;
@@ -69,16 +69,16 @@ std::optional<Constant> Folder::part(ExprId id) {
     return value;
   }
   if (!types.is_scalar(part->type)) {
-    sema_.error(DiagnosticCode::kBadInitializer, sema_.tree[id].span,
-                "this is a whole `" + sema_.report.type_text(part->type) + "`",
-                "name the member or element that is meant");
+    error(DiagnosticCode::kBadInitializer, sema_.tree[id].span,
+          "this is a whole `" + sema_.report.type_text(part->type) + "`",
+          "name the member or element that is meant");
     return std::nullopt;
   }
   return of_bits(part->type, init.valid() ? sema_.program.constants[init].bits : 0);
 }
 
 std::optional<Constant> Folder::bits_of(ExprId id, const Expr& expr) {
-  const Note note = sema_.infer(id);
+  const Note note = infer(id);
   ir::TypeId saved = context_;
   context_ = {};
   auto whole = fold(expr.operand);
@@ -95,17 +95,17 @@ std::optional<Constant> Folder::bits_of(ExprId id, const Expr& expr) {
 std::optional<Constant> Folder::call(ExprId id) {
   const Expr& expr = sema_.tree[id];
   if (expr.kind == ExprKind::kCall) {
-    Callee callee = sema_.ask<Calls>().callee(expr);
+    Callee callee = ask<Calls>().callee(expr);
     if (callee.kind == Callee::Kind::kBound) {
-      auto bound = sema_.ask<Calls>().bound_of(expr, callee.upper);
+      auto bound = ask<Calls>().bound_of(expr, callee.upper);
       if (!bound) return std::nullopt;
       Constant value;
-      value.type = sema_.infer(id).type;
+      value.type = infer(id).type;
       value.integer = *bound;
       return value;
     }
   }
-  return evaluate_constant(sema_, id, context_);
+  return evaluate_constant(sema_, scope_, id, context_);
 }
 
 std::optional<Constant> Folder::literal(const Expr& expr) {
@@ -135,13 +135,13 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
       if (literal.negative) value.integer = -value.integer;
       if (literal.kind != LiteralKind::kInteger) {
         value.type =
-            without_range(sema_.program.types, sema_.ask<Expressions>().infer_literal(expr).type);
+            without_range(sema_.program.types, ask<Expressions>().infer_literal(expr).type);
       }
       break;
   }
   if (literal.prefix == kNoNumber) return value;
   // A typed literal has to fit its prefix: INT#40000 does not.
-  ir::TypeId type = sema_.ask<Expressions>().infer_literal(expr).type;
+  ir::TypeId type = ask<Expressions>().infer_literal(expr).type;
   if (!type.valid()) return std::nullopt;
   if (is_string(sema_.program.types, type)) {
     value.type = type;
@@ -155,21 +155,21 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
     if (value.integer < span)
       value.integer = wrap_to(sema_.program.types.scalar(type), value.integer);
   }
-  auto bits = sema_.ask<Constants>().fit(value, type, expr.span);
+  auto bits = ask<Constants>().fit(value, type, expr.span);
   if (!bits) return std::nullopt;
   return of_bits(type, *bits);
 }
 
 std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (!note.variable.valid()) {
     ir::TypeId type = note.type;
     if (note.flex == Flex::kEnum && context_.valid() && is_enum(sema_.program.types, context_)) {
       type = context_;
     } else if (note.flex == Flex::kEnum) {
-      sema_.error(DiagnosticCode::kAmbiguousName, expr.span,
-                  "several enumerations have a literal `" + std::string(expr.name.text) + "`",
-                  "write the enumeration's name before it: Name#" + std::string(expr.name.text));
+      error(DiagnosticCode::kAmbiguousName, expr.span,
+            "several enumerations have a literal `" + std::string(expr.name.text) + "`",
+            "write the enumeration's name before it: Name#" + std::string(expr.name.text));
       return std::nullopt;
     }
     return enumerator(type, expr);
@@ -184,9 +184,10 @@ std::optional<Constant> Folder::enumerator(ir::TypeId type, const Expr& name) {
     return of_bits(root, static_cast<uint64_t>(literal.value));
   }
   // Ambiguous name in the context of a third enumeration: any candidate will be refused.
-  auto found = sema_.declared.literals.find(sema_.namespaces.find(NameSort::kLiteral, name));
+  auto found =
+      sema_.declared.literals.find(sema_.namespaces.find(NameSort::kLiteral, scope_, name));
   if (found == sema_.declared.literals.end()) return std::nullopt;  // NULL, for example
-  const ir::TypeId any = sema_.ask<Types>().resolve_type(found->second[0].spec).type;
+  const ir::TypeId any = ask<Types>().resolve_type(found->second[0].spec).type;
   if (!sema_.program.types.is_scalar(any)) return std::nullopt;
   return of_bits(any, 0);
 }
@@ -195,8 +196,8 @@ std::optional<Constant> Folder::exact(Constant result, Wide value, const Expr& e
   if (result.flex == Flex::kNone) {
     value = wrap_to(sema_.program.types.scalar(result.type), value);
   } else if (value > kMaxExact * 4 || value < -kMaxExact * 2) {
-    sema_.error(DiagnosticCode::kConstantOverflow, expr.span,
-                "the value " + wide_text(value) + " fits no type");
+    error(DiagnosticCode::kConstantOverflow, expr.span,
+          "the value " + wide_text(value) + " fits no type");
     return std::nullopt;
   }
   result.integer = value;
@@ -207,7 +208,7 @@ std::optional<Constant> Folder::unary(ExprId id, const Expr& expr) {
   auto operand = fold(expr.operand);
   if (!operand) return std::nullopt;
   Constant result = *operand;
-  const Note& note = sema_.infer(id);
+  const Note& note = infer(id);
   if (note.flex == Flex::kNone) result.type = computed_type(sema_, note);
   if (expr.unary == UnaryOp::kPlus) return result;
   result.pattern = false;
@@ -235,12 +236,10 @@ std::optional<Constant> Folder::unary(ExprId id, const Expr& expr) {
 }
 
 std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
-  const Note note = sema_.infer(id);
+  const Note note = infer(id);
   ir::TypeId saved = context_;
   if (operator_class(expr.binary) == OperatorClass::kComparison) {
-    context_ = sema_.ask<OperatorTypes>()
-                   .unify(sema_.infer(expr.operand), sema_.infer(expr.right), expr.span)
-                   .type;
+    context_ = ask<OperatorTypes>().unify(infer(expr.operand), infer(expr.right), expr.span).type;
   } else if (note.flex == Flex::kNone) {
     context_ = computed_type(sema_, note);
   }
@@ -272,7 +271,7 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
 
 std::optional<Constant> Constants::fold(ExprId expr, ir::TypeId context, Known least) {
   if (!infer(expr).type.valid()) return std::nullopt;
-  return Folder(sema_, context, least).fold(expr);
+  return Folder(sema_, scope_, context, least).fold(expr);
 }
 
 }  // namespace frontend

@@ -64,16 +64,16 @@ std::optional<Constant> Folder::real_binary(const Expr& expr, double a, double b
       value = a / b;
       break;
     default:
-      sema_.error(DiagnosticCode::kBadOperand, expr.span,
-                  std::string(operator_text(expr.binary)) + " is not defined for reals",
-                  "convert what it gives: TO_REAL(WORD#2#1010 AND WORD#2#1100)");
+      error(DiagnosticCode::kBadOperand, expr.span,
+            std::string(operator_text(expr.binary)) + " is not defined for reals",
+            "convert what it gives: TO_REAL(WORD#2#1010 AND WORD#2#1100)");
       return std::nullopt;
   }
   value = ir::with_nan_of(value, a, b);
   Traits traits = traits_of(sema_.program.types, result.type);
   if (result.flex == Flex::kNone && traits.duration) {
     if (!(std::fabs(value) < 9.2e18)) {
-      sema_.error(DiagnosticCode::kConstantOverflow, expr.span, "the duration does not fit");
+      error(DiagnosticCode::kConstantOverflow, expr.span, "the duration does not fit");
       return std::nullopt;
     }
     result.integer = static_cast<Wide>(std::nearbyint(value));
@@ -100,7 +100,7 @@ std::optional<Constant> Folder::integer_binary(const Expr& expr, Wide a, Wide b,
     case BinaryOp::kDiv:
     case BinaryOp::kMod:
       if (b == 0) {
-        sema_.error(DiagnosticCode::kConstantDivision, expr.span, "the divisor is 0");
+        error(DiagnosticCode::kConstantDivision, expr.span, "the divisor is 0");
         return std::nullopt;
       }
       return exact(result, expr.binary == BinaryOp::kDiv ? a / b : a % b, expr);

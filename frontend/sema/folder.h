@@ -2,7 +2,7 @@
 // literals alone stay exact until their context gives them a type.
 #pragma once
 
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 
@@ -10,10 +10,10 @@ namespace frontend {
 // products of two of them still fit.
 inline constexpr Wide kMaxExact = static_cast<Wide>(1) << 62;
 
-class Folder {
+class Folder : private Phase {
  public:
-  Folder(Sema& sema, ir::TypeId context, Known least)
-      : sema_(sema), context_(context), least_(least) {}
+  Folder(Sema& sema, const PouScope& scope, ir::TypeId context, Known least)
+      : Phase(sema, scope), context_(context), least_(least) {}
   std::optional<Constant> fold(ExprId id);
 
  private:
@@ -40,7 +40,6 @@ class Folder {
     return context_.valid() && traits_of(sema_.program.types, context_).real;
   }
 
-  Sema& sema_;
   ir::TypeId context_;
   Known least_;
 };

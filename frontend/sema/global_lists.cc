@@ -58,12 +58,12 @@ void Collection::collect_globals(const VarBlock& block, std::string_view list) {
 // List.x or A.x; nullopt when neither a list nor a namespace stands before the dot.
 std::optional<Note> Expressions::infer_list_member(const Expr& expr) {
   const Expr& head = sema_.tree[expr.operand];
-  const VarId variable = sema_.namespaces.find_global(expr);
+  const VarId variable = sema_.namespaces.find_global(scope_, expr);
   if (variable.valid()) return variable_note(variable);
-  if (sema_.namespaces.is_namespace(head)) return infer_enum_name(expr);
-  const GlobalList* list = sema_.namespaces.list(head);
+  if (sema_.namespaces.is_namespace(scope_, head)) return infer_enum_name(expr);
+  const GlobalList* list = sema_.namespaces.list(scope_, head);
   if (list == nullptr) return std::nullopt;
-  const std::string_view other = sema_.namespaces.find(NameSort::kDeclaration, head);
+  const std::string_view other = sema_.namespaces.find(NameSort::kDeclaration, scope_, head);
   if (sema_.declared.types.contains(other) || sema_.declared.pou_names.contains(other))
     return std::nullopt;
   NearestName nearest(expr.name.text);

@@ -28,7 +28,7 @@ VarId Collection::add_static(Variable variable, PouInfo& info) {
   if (info.static_list.empty()) info.static_list = sema_.declared.keep_name(static_list_name(info));
   variable.list = info.static_list;
   VarId id = add_variable(variable, info.names);
-  if (id.valid()) sema_.ask<Variables>().place_global(id);
+  if (id.valid()) ask<Variables>().place_global(id);
   return id;
 }
 

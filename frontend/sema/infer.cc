@@ -3,6 +3,7 @@
 #include "frontend/sema/calls.h"
 #include "frontend/sema/collection.h"
 #include "frontend/sema/expressions.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/sema.h"
@@ -100,7 +101,7 @@ Note Expressions::infer_kind(ExprId, const Expr& expr) {
     case ExprKind::kDirect: {
       Note note;
       note.type = ask<Variables>().type_of_direct(sema_.tree.directs[expr.number].address);
-      if (const AddressView* view = direct_view(sema_, expr)) mark_bit(note, *view);
+      if (const AddressView* view = direct_view(*this, expr)) mark_bit(note, *view);
       return note;
     }
     case ExprKind::kDeref:
@@ -113,7 +114,7 @@ Note Expressions::infer_kind(ExprId, const Expr& expr) {
       return {};
     case ExprKind::kThis:
     case ExprKind::kSuper:
-      return sema_.objects.infer_this(expr);
+      return ask<Objects>().infer_this(expr);
     case ExprKind::kError:
     case ExprKind::kType:  // reported by report_not_supported()
       return {};
@@ -191,7 +192,7 @@ Note Expressions::infer_name(const Expr& expr) {
   if (!id.valid()) return infer_enum_name(expr);
   const Variable& variable = sema_.declared.variables[id.index];
   if (variable.access == Access::kPrivate) {  // of a base
-    sema_.objects.check_access(variable.access, variable.pou, expr.name);
+    ask<Objects>().check_access(variable.access, variable.pou, expr.name);
   }
   return variable_note(id);
 }
@@ -222,15 +223,15 @@ Note Expressions::infer_enum_name(const Expr& expr) {
   const bool plain = expr.kind == ExprKind::kName;
   const uint32_t own = plain ? sema_.declared.block_of(scope_) : kNoPou;
   Objects::Found code;
-  if (own != kNoPou) code = sema_.objects.find_code(own, expr.name.text);
-  if (code.code.is_property()) return sema_.objects.infer_property(expr.name, code);
+  if (own != kNoPou) code = ask<Objects>().find_code(own, expr.name.text);
+  if (code.code.is_property()) return ask<Objects>().infer_property(expr.name, code);
   if (code.owner != kNoPou) {
     error(DiagnosticCode::kNotAValue, expr.span,
           "`" + std::string(expr.name.text) + "` is a method",
           "call it: `" + std::string(expr.name.text) + "()`");
     return {};
   }
-  std::string_view name = sema_.namespaces.find(NameSort::kLiteral, expr);
+  std::string_view name = sema_.namespaces.find(NameSort::kLiteral, scope_, expr);
   auto found = sema_.declared.literals.find(name);
   if (found == sema_.declared.literals.end() && plain &&
       ask<Collection>().use_library_literal(name))
@@ -238,7 +239,7 @@ Note Expressions::infer_enum_name(const Expr& expr) {
   if (found == sema_.declared.literals.end()) {
     VarId id = plain ? ask<Variables>().program_variable(name, false) : VarId();
     if (id.valid()) return variable_note(id);
-    name = sema_.namespaces.find(NameSort::kDeclaration, expr);
+    name = sema_.namespaces.find(NameSort::kDeclaration, scope_, expr);
     if (sema_.namespaces.is_path(expr)) {
       error(DiagnosticCode::kNotAValue, expr.span, "`" + std::string(name) + "` is a namespace");
       return {};
@@ -270,7 +271,7 @@ Note Expressions::infer_qualified(const Expr& expr) {
   whole.operand = expr.operand;
   whole.name = type;
   whole.span = {sema_.tree[expr.operand].span.begin, type.span.end};
-  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, whole);
+  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, scope_, whole);
   if (!name.empty()) return infer_literal_of(name, whole.span, expr.name);
   error(DiagnosticCode::kUnknownName, sema_.tree[expr.operand].span,
         "what stands before `" + std::string(type.text) + "#` is not a namespace");

@@ -3,6 +3,7 @@
 
 #include "frontend/sema/constants.h"
 #include "frontend/sema/expressions.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types.h"
@@ -18,9 +19,9 @@ Note Expressions::infer_member(const Expr& expr) {
     return infer_literal_of(type, head.span, expr.name);
   }
   if (auto global = infer_list_member(expr)) return *global;
-  if (sema_.objects.is_own(head)) {
-    const uint32_t owner = sema_.objects.receiver(expr.operand);
-    return owner == kNoPou ? Note() : sema_.objects.infer_member(expr, owner, {});
+  if (ask<Objects>().is_own(head)) {
+    const uint32_t owner = ask<Objects>().receiver(expr.operand);
+    return owner == kNoPou ? Note() : ask<Objects>().infer_member(expr, owner, {});
   }
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
@@ -51,8 +52,8 @@ Note Expressions::infer_member(const Expr& expr) {
           nearest.fix());
     return {};
   }
-  const uint32_t owner = sema_.objects.receiver(expr.operand);
-  if (owner != kNoPou) return sema_.objects.infer_member(expr, owner, note);
+  const uint32_t owner = ask<Objects>().receiver(expr.operand);
+  if (owner != kNoPou) return ask<Objects>().infer_member(expr, owner, note);
   const bool block = sema_.program.types.is_reference(operand.type) &&
                      sema_.declared.pou_of(sema_.program.types[operand.type].base) != nullptr;
   error(DiagnosticCode::kNoMembers, expr.span,
@@ -72,7 +73,7 @@ std::string_view Expressions::enumeration_named(const Expr& head) {
   const VarId variable =
       head.kind == ExprKind::kName ? ask<Variables>().find_variable(head.name) : VarId();
   if (variable.valid() && !enumeration(resolve(variable).type)) return {};
-  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, head);
+  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, scope_, head);
   if (name.empty() || !sema_.declared.types.contains(name)) return {};
   if (!variable.valid()) return name;
   auto use = ask<Types>().find_type(name);

@@ -3,6 +3,7 @@
 
 #include "frontend/sema/calls.h"
 #include "frontend/sema/collection.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/open_functions.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
@@ -25,27 +26,28 @@ std::string_view last_name(const Name& path) {
 Callee Calls::callee(const Expr& call) {
   const Expr& head = sema_.tree[call.operand];
   if (head.kind == ExprKind::kName) {
-    VarId id = sema_.ask<Variables>().find_variable(head);
+    VarId id = ask<Variables>().find_variable(head);
     if (!id.valid() && !head.global) {
-      if (auto method = sema_.objects.method_of(sema_.declared.block_of(scope_), head.name))
+      if (auto method = ask<Objects>().method_of(sema_.declared.block_of(scope_), head.name))
         return *method;
     }
-    if (!id.valid()) id = sema_.ask<Variables>().program_variable(head.name.text, true);
+    if (!id.valid()) id = ask<Variables>().program_variable(head.name.text, true);
     if (!id.valid()) {
       return named_callee(call, head);
     }
     // The function's own name is its result inside; calling it is recursion.
-    if (scope_.pou != nullptr && id == scope_.pou->result) return sema_.objects.itself(head);
+    if (scope_.pou != nullptr && id == scope_.pou->result) return ask<Objects>().itself(head);
     // A variable may have a function's name; calls then still mean the function.
     bool instance = sema_.declared.pou_of(resolve(id).type) != nullptr;
     if (!instance && sema_.library.functions.contains(head.name.text))
       return named_callee(call, head);
   }
-  if (sema_.namespaces.declares(head)) return named_callee(call, head);
-  if (sema_.objects.is_super(head)) return sema_.objects.base_body(head);
-  if (head.kind == ExprKind::kMember && !sema_.namespaces.is_scope(sema_.tree[head.operand])) {
-    const uint32_t owner = sema_.objects.receiver(head.operand);
-    if (auto method = sema_.objects.method_of(owner, head.name)) return *method;
+  if (sema_.namespaces.declares(scope_, head)) return named_callee(call, head);
+  if (ask<Objects>().is_super(head)) return ask<Objects>().base_body(head);
+  if (head.kind == ExprKind::kMember &&
+      !sema_.namespaces.is_scope(scope_, sema_.tree[head.operand])) {
+    const uint32_t owner = ask<Objects>().receiver(head.operand);
+    if (auto method = ask<Objects>().method_of(owner, head.name)) return *method;
   }
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};
@@ -84,7 +86,7 @@ Callee Calls::callee(const Expr& call) {
 // f or A.f
 Callee Calls::named_callee(const Expr& call, const Expr& head) {
   Callee callee;
-  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, head);
+  const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, scope_, head);
   bool known = sema_.declared.pou_names.contains(name);
   if (!known && !sema_.library.functions.contains(name))
     known = ask<Collection>().use_library(name);
@@ -137,7 +139,7 @@ Callee Calls::named_callee(const Expr& call, const Expr& head) {
     return callee;
   }
   error(DiagnosticCode::kUnknownName, head.span, "`" + std::string(name) + "` is not declared",
-        sema_.ask<Variables>().name_suggestion(name, true, head.instruction));
+        ask<Variables>().name_suggestion(name, true, head.instruction));
   return callee;
 }
 

@@ -30,7 +30,7 @@ std::optional<Conversion> StandardCalls::conversion_to_enumeration(std::string_v
       if (!source) continue;
       out.from = *source;
     }
-    const auto found = sema_.ask<Types>().find_type(name.substr(at + kTo.size()));
+    const auto found = ask<Types>().find_type(name.substr(at + kTo.size()));
     if (!found || !is_enum(sema_.program.types, found->type)) continue;
     out.enumeration = found->type;
     out.to = sema_.program.types.root_kind(found->type);

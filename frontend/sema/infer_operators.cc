@@ -145,23 +145,23 @@ Note OperatorTypes::infer_binary(const Expr& expr) {
       }
       bool eager = expr.binary == BinaryOp::kAnd || expr.binary == BinaryOp::kOr;
       bool boolean = traits_of(sema_.program.types, right.type).boolean;
-      if (eager && boolean && right.can_trap) check_right_operand(sema_, expr);
+      if (eager && boolean && right.can_trap) check_right_operand(*this, expr);
       return infer_bitwise(expr.binary, left, right, expr.span);
     }
     case OperatorClass::kComparison:
-      check_real_equality(sema_, expr);
-      check_wrapped(sema_, expr.operand, "compared");
-      check_wrapped(sema_, expr.right, "compared");
+      check_real_equality(*this, expr);
+      check_wrapped(*this, expr.operand, "compared");
+      check_wrapped(*this, expr.right, "compared");
       return infer_comparison(expr.binary, left, right, expr.span);
     case OperatorClass::kArithmetic: {
       Note note = infer_arithmetic(expr.binary, left, right, expr.span);
       note = widened_by(sema_, widened_by(sema_, note, expr.operand), expr.right);
       bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
       if (divides && note.type.valid() && right.constant && !left.constant) {
-        check_divisor(sema_, expr.right, !traits_of(sema_.program.types, note.type).real);
+        check_divisor(*this, expr.right, !traits_of(sema_.program.types, note.type).real);
       }
       if (divides) note = quotient_width(sema_, note, expr, left, right);
-      if (divides) check_wrapped(sema_, expr.operand, "divided");
+      if (divides) check_wrapped(*this, expr.operand, "divided");
       if (divides && !right.constant && note.type.valid() &&
           !traits_of(sema_.program.types, note.type).real) {
         note.can_trap = true;

@@ -3,6 +3,7 @@
 #include "frontend/sema/expressions.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
+#include "frontend/sema/pools.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types.h"
 #include "frontend/sema/variables.h"
@@ -125,7 +126,7 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   }
   const ExprId argument = sema_.tree.args[expr.list.first].value;
   Note note;
-  if (call == ReferenceCall::kNew) return sema_.pools.infer_new(argument);
+  if (call == ReferenceCall::kNew) return ask<Pools>().infer_new(argument);
   if (call == ReferenceCall::kSizeof) {
     if (!type_of_argument(argument).valid()) return {};
     note.type = sema_.program.types.elementary(ir::Kind::kUdint);
@@ -134,7 +135,7 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   }
   const Note& operand = infer(argument);
   if (!operand.type.valid()) return {};
-  if (call == ReferenceCall::kDelete) return sema_.pools.infer_delete(argument);
+  if (call == ReferenceCall::kDelete) return ask<Pools>().infer_delete(argument);
   note.calls = operand.calls;
   note.can_trap = operand.can_trap;
   switch (call) {
@@ -164,11 +165,11 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
 // SIZEOF takes a variable or a type.
 ir::TypeId Calls::type_of_argument(ExprId argument) {
   const Expr& expr = sema_.tree[argument];
-  if (expr.kind == ExprKind::kType) return sema_.ask<Types>().resolve_type(expr.spec()).type;
-  if (expr.kind == ExprKind::kName ? !sema_.ask<Variables>().find_variable(expr.name).valid()
-                                   : sema_.namespaces.declares(expr)) {
+  if (expr.kind == ExprKind::kType) return ask<Types>().resolve_type(expr.spec()).type;
+  if (expr.kind == ExprKind::kName ? !ask<Variables>().find_variable(expr.name).valid()
+                                   : sema_.namespaces.declares(scope_, expr)) {
     if (auto use =
-            sema_.ask<Types>().find_type(sema_.namespaces.find(NameSort::kDeclaration, expr)))
+            ask<Types>().find_type(sema_.namespaces.find(NameSort::kDeclaration, scope_, expr)))
       return use->type;
   }
   return infer(argument).type;

@@ -6,7 +6,7 @@
 #include "frontend/sema/operand_warnings.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 #include "frontend/sema/standard_calls.h"
 #include "frontend/sema/width.h"
 
@@ -17,17 +17,18 @@ using stdlib::FunctionRule;
 namespace {
 
 // In a diagram: power at an operand of a box for numbers is meant for EN.
-bool takes_power(Sema& sema, const Expr& expr, const stdlib::FunctionRow& row,
+bool takes_power(const Phase& phase, const Expr& expr, const stdlib::FunctionRow& row,
                  const std::vector<ExprId>& args) {
   const bool numbers = row.rule == FunctionRule::kCompare ||
                        row.rule == FunctionRule::kArithmetic || row.rule == FunctionRule::kExtreme;
   if (!numbers || args.size() < 2 || !args[0].valid() || !args[1].valid()) return false;
-  const bool power = sema.tree[args[0]].kind == ExprKind::kResult &&
-                     traits_of(sema.program.types, sema.infer(args[0]).type).boolean;
-  if (!power || !traits_of(sema.program.types, sema.infer(args[1]).type).number()) return false;
-  sema.error(DiagnosticCode::kOperandsDiffer, expr.span,
-             "power, which is `BOOL`, arrives at an operand of " + std::string(row.name),
-             "let it arrive at EN: " + std::string(row.name) + "(EN:=_, ...)");
+  const bool power = phase.sema().tree[args[0]].kind == ExprKind::kResult &&
+                     traits_of(phase.sema().program.types, phase.infer(args[0]).type).boolean;
+  if (!power || !traits_of(phase.sema().program.types, phase.infer(args[1]).type).number())
+    return false;
+  phase.error(DiagnosticCode::kOperandsDiffer, expr.span,
+              "power, which is `BOOL`, arrives at an operand of " + std::string(row.name),
+              "let it arrive at EN: " + std::string(row.name) + "(EN:=_, ...)");
   return true;
 }
 
@@ -83,13 +84,13 @@ Note StandardCalls::infer_standard(const Expr& expr, const Callee& callee) {
     all.can_trap = all.can_trap || note.can_trap;
     all.known = std::min(all.known, note.known);
   }
-  if (!ask<Calls>().takes_typed(callee, args) || takes_power(sema_, expr, row, args)) return {};
+  if (!ask<Calls>().takes_typed(callee, args) || takes_power(*this, expr, row, args)) return {};
   Note note = infer_rule(expr, row, args);
   if (callee.typed.valid() && note.type.valid() && row.rule != FunctionRule::kCompare) {
     note.type = callee.typed;
     note.flex = Flex::kNone;
   }
-  note.width = standard_width(sema_, row, args, note, callee.typed.valid());
+  note.width = standard_width(*this, row, args, note, callee.typed.valid());
   note.known = all.known;
   note.bit_size = 0;
   note.calls = all.calls;
@@ -174,7 +175,7 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
     case FunctionRule::kArithmetic:
     case FunctionRule::kBitwise: {
       const BinaryOp op = standard_operator(row.id);
-      if (op == BinaryOp::kDiv || op == BinaryOp::kMod) check_wrapped(sema_, args[0], "divided");
+      if (op == BinaryOp::kDiv || op == BinaryOp::kMod) check_wrapped(*this, args[0], "divided");
       Note note = argument(0);
       for (uint32_t i = 1; i < args.size() && note.type.valid(); ++i) {
         note = row.rule == FunctionRule::kArithmetic
@@ -197,7 +198,7 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       Traits count = traits_of(sema_.program.types, argument(1).type);
       note.type = without_range(sema_.program.types, note.type);
       if (!traits.bits && !traits.integer) return refuse(note);
-      if (row.id == stdlib::FunctionId::kShr) check_wrapped(sema_, args[0], "shifted right");
+      if (row.id == stdlib::FunctionId::kShr) check_wrapped(*this, args[0], "shifted right");
       return count.integer || count.bits ? note : refuse(argument(1));
     }
     case FunctionRule::kSelect:
@@ -210,7 +211,7 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return !note.type.valid() || ordered ? note : refuse(note);
     }
     case FunctionRule::kCompare: {
-      for (const ExprId arg : args) check_wrapped(sema_, arg, "compared");
+      for (const ExprId arg : args) check_wrapped(*this, arg, "compared");
       Note common = ask<OperatorTypes>().unify_arguments(args, 0);
       return ask<OperatorTypes>().infer_comparison(standard_operator(row.id), common, common,
                                                    expr.span);

@@ -27,8 +27,7 @@ void Objects::inherit() {
 // The block or interface that a name after EXTENDS or IMPLEMENTS means; reports.
 uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interface) {
   if (is_query_interface(sema_.tree, sema_.tree[spec])) return kNoPou;
-  Sema::Within scope(sema_, info.number);
-  ir::TypeId type = sema_.ask<Types>().resolve_type(spec).type;
+  ir::TypeId type = Types(sema_, PouScope(info)).resolve_type(spec).type;
   if (!type.valid()) return kNoPou;
   if (is_interface(sema_.program.types, type)) type = sema_.program.types[type].base;
   const auto found = sema_.declared.pou_by_type.find(type);
@@ -37,12 +36,12 @@ uint32_t Objects::named_ancestor(const PouInfo& info, SpecId spec, bool interfac
   const bool good =
       decl != nullptr && (interface ? decl->kind == PouKind::kInterface : is_block(decl->kind));
   if (good) return found->second;
-  sema_.error(DiagnosticCode::kBadBase, sema_.tree[spec].span,
-              "`" + sema_.report.type_text(type) + "` is no " +
-                  (interface ? "interface" : "function block or class"),
-              interface         ? "extend it, or declare an INTERFACE"
-              : decl != nullptr ? "write IMPLEMENTS"
-                                : "");
+  error(DiagnosticCode::kBadBase, sema_.tree[spec].span,
+        "`" + sema_.report.type_text(type) + "` is no " +
+            (interface ? "interface" : "function block or class"),
+        interface         ? "extend it, or declare an INTERFACE"
+        : decl != nullptr ? "write IMPLEMENTS"
+                          : "");
   return kNoPou;
 }
 
@@ -52,19 +51,19 @@ bool Objects::finish_ancestor(const PouInfo& info, uint32_t ancestor, SpecId spe
   if (depth < base::kMaxNesting) {
     inherit(ancestor, depth + 1);
     if (sema_.declared.pous[ancestor].inheritance != Progress::kDone) {
-      sema_.error(DiagnosticCode::kBadBase, sema_.tree[spec].span,
-                  quoted(info.decl->name) + " extends itself" +
-                      (ancestor == info.number
-                           ? std::string()
-                           : ", through " + quoted(sema_.declared.pous[ancestor].decl->name)));
+      error(DiagnosticCode::kBadBase, sema_.tree[spec].span,
+            quoted(info.decl->name) + " extends itself" +
+                (ancestor == info.number
+                     ? std::string()
+                     : ", through " + quoted(sema_.declared.pous[ancestor].decl->name)));
       return false;
     }
     length = 1;
     for (uint32_t at = ancestor; at != kNoPou; at = sema_.declared.pous[at].base) ++length;
   }
   if (length <= base::kMaxNesting) return true;
-  sema_.error(DiagnosticCode::kTooDeep, sema_.tree[spec].span,
-              "more than " + std::to_string(base::kMaxNesting) + " bases after each other");
+  error(DiagnosticCode::kTooDeep, sema_.tree[spec].span,
+        "more than " + std::to_string(base::kMaxNesting) + " bases after each other");
   return false;
 }
 
@@ -110,8 +109,8 @@ void Objects::inherit(uint32_t number, uint32_t depth) {
 void Objects::set_base(PouInfo& info, uint32_t number, base::SourceSpan span) {
   const PouInfo& base = sema_.declared.pous[number];
   if (base.decl->is_final) {
-    sema_.error(DiagnosticCode::kBadBase, span,
-                quoted(base.decl->name) + " is FINAL; nothing extends it");
+    error(DiagnosticCode::kBadBase, span,
+          quoted(base.decl->name) + " is FINAL; nothing extends it");
   }
   info.base = number;
   info.inherited = base.inherited + static_cast<uint32_t>(base.members.size());

@@ -1,5 +1,6 @@
 // What a variable, member or element starts with: the meaning of `y : INT := x.a[2]`.
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -17,7 +18,7 @@ ir::ConstId Constants::listed(ir::ConstId list, uint64_t index) const {
 // Works for an instance whose block is not resolved yet, too.
 ir::ConstId Constants::member_default(ir::TypeId type, uint32_t member) {
   if (const PouInfo* block = sema_.declared.pou_of(type)) {
-    const VarId id = sema_.objects.member_variable(*block, member);
+    const VarId id = ask<Objects>().member_variable(*block, member);
     return id.valid() ? resolve(id).init : ir::ConstId();
   }
   if (ir::ConstId own = listed(sema_.program.types[type].init, member); own.valid()) return own;
@@ -59,7 +60,7 @@ std::optional<TypeUse> Constants::initial_member(const Expr& expr) {
   int32_t member = sema_.declared.find_member(whole->type, expr.name.text);
   ir::TypeId type;
   if (const PouInfo* block = sema_.declared.pou_of(whole->type)) {
-    const Variable& variable = resolve(sema_.objects.find_parameter(*block, expr.name.text));
+    const Variable& variable = resolve(ask<Objects>().find_parameter(*block, expr.name.text));
     member = static_cast<int32_t>(variable.index);
     type = variable.type;
   } else {

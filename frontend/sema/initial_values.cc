@@ -2,6 +2,7 @@
 #include <map>
 
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/variables.h"
 
@@ -9,9 +10,10 @@ namespace frontend {
 
 // Builds one initial value. `otherwise` is the value that the declared type gives the
 // place: what a list leaves out keeps it.
-class InitialBuilder {
+class InitialBuilder : private Phase {
  public:
-  InitialBuilder(Sema& sema, Known least) : sema_(sema), least_(least) {}
+  InitialBuilder(Sema& sema, const PouScope& scope, Known least)
+      : Phase(sema, scope), least_(least) {}
   ir::ConstId value(ExprId id, ir::TypeId type, ir::ConstId otherwise);
 
  private:
@@ -42,7 +44,6 @@ class InitialBuilder {
   bool set_bit(ExprId id, const Slot& slot, ir::TypeId type,
                std::vector<ir::ConstElement>& elements);
 
-  Sema& sema_;
   Known least_;
 };
 
@@ -56,20 +57,20 @@ ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherw
   }
   if (expr.kind == ExprKind::kStructInit && members) return structure(expr, type, otherwise);
   if (types.is_reference(type) && sema_.facts.binds_at_start) {
-    const Note& note = sema_.infer(id);
-    if (note.type.valid() && !note.constant) return sema_.start_values.add(id);
+    const Note& note = infer(id);
+    if (note.type.valid() && !note.constant) return sema_.start_values.add(scope_, id);
   }
   if (types.is_scalar(type)) {
-    auto bits = sema_.ask<Constants>().fold_bits(id, type, least_);
+    auto bits = ask<Constants>().fold_bits(id, type, least_);
     return bits ? sema_.program.constants.scalar(*bits) : ir::ConstId();
   }
   return is_string(types, type) ? text(id, type) : whole(id, type);
 }
 
 ir::ConstId InitialBuilder::text(ExprId id, ir::TypeId type) {
-  auto value = sema_.ask<Constants>().fold(id, type, least_);
+  auto value = ask<Constants>().fold(id, type, least_);
   if (!value) return {};
-  auto text = sema_.ask<Constants>().fit_text(*value, type, sema_.tree[id].span);
+  auto text = ask<Constants>().fit_text(*value, type, sema_.tree[id].span);
   if (!text) return {};
   return sema_.program.constants.add({0, std::move(*text), {}});
 }
@@ -80,19 +81,19 @@ ir::ConstId InitialBuilder::whole(ExprId id, ir::TypeId type) {
   bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit ||
               expr.kind == ExprKind::kRepeat;
   if (!list) {
-    const Note& note = sema_.infer(id);
+    const Note& note = infer(id);
     if (!note.type.valid()) return {};
     if (note.type == type && note.known >= least_ && !sema_.program.types.is_instance(type)) {
-      auto part = sema_.ask<Constants>().initial_part(id);
+      auto part = ask<Constants>().initial_part(id);
       if (!part) return {};
       if (part->init.valid()) return part->init;
       return sema_.program.constants.add({});
     }
   }
   bool is_array = sema_.program.types[type].kind == ir::Kind::kArray;
-  sema_.error(DiagnosticCode::kBadInitializer, expr.span,
-              "this is no initial value of `" + sema_.report.type_text(type) + "`",
-              is_array ? "write [value, value, 3(value)]" : "write (member := value, ...)");
+  error(DiagnosticCode::kBadInitializer, expr.span,
+        "this is no initial value of `" + sema_.report.type_text(type) + "`",
+        is_array ? "write [value, value, 3(value)]" : "write (member := value, ...)");
   return {};
 }
 
@@ -120,7 +121,7 @@ bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>
       values.push_back(tree.expr_lists[item.list.first + k]);
     }
   } else if (item.kind == ExprKind::kCall && tree[item.operand].kind == ExprKind::kName &&
-             sema_.ask<Variables>().find_variable(tree[item.operand]).valid()) {
+             ask<Variables>().find_variable(tree[item.operand]).valid()) {
     for (uint32_t k = 0; k < item.list.count; ++k) {
       values.push_back(tree.args[item.list.first + k].value);
       if (!values.back().valid()) return false;
@@ -129,10 +130,10 @@ bool InitialBuilder::item_parts(ExprId id, uint64_t& rounds, std::vector<ExprId>
     values.push_back(id);
     return true;
   }
-  auto count = sema_.ask<Constants>().fold_integer(item.operand);
+  auto count = ask<Constants>().fold_integer(item.operand);
   if (!count) return false;
   if (*count < 0) {
-    sema_.error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
+    error(DiagnosticCode::kBadInitializer, item.span, "a negative number of values");
     return false;
   }
   rounds = static_cast<uint64_t>(*count);
@@ -145,9 +146,9 @@ bool InitialBuilder::item(ExprId id, ArrayList& list) {
   if (!item_parts(id, rounds, values)) return false;
   uint64_t width = values.empty() ? 1 : values.size();  // n(): elements keep their default
   if (rounds > list.total || list.at + rounds * width > list.total) {
-    sema_.error(DiagnosticCode::kTooManyInitializers, sema_.tree[id].span,
-                "`" + sema_.report.type_text(list.type) + "` has " + std::to_string(list.total) +
-                    " elements");
+    error(DiagnosticCode::kTooManyInitializers, sema_.tree[id].span,
+          "`" + sema_.report.type_text(list.type) + "` has " + std::to_string(list.total) +
+              " elements");
     return false;
   }
   if (values.empty()) list.at += rounds;
@@ -167,8 +168,7 @@ bool InitialBuilder::element(ExprId id, uint64_t rounds, ArrayList& list) {
   bool partial = kind == ExprKind::kArrayInit || kind == ExprKind::kStructInit;
   uint64_t step = partial && list.otherwise.valid() ? 1 : rounds;
   for (uint64_t end = list.at + rounds; list.at < end; list.at += step) {
-    ir::ConstId init =
-        element_value(id, sema_.ask<Constants>().listed(list.otherwise, list.at), list);
+    ir::ConstId init = element_value(id, ask<Constants>().listed(list.otherwise, list.at), list);
     if (!init.valid()) return false;
     list.elements.push_back({static_cast<uint32_t>(list.at), static_cast<uint32_t>(step), init});
   }
@@ -184,10 +184,10 @@ ir::ConstId InitialBuilder::element_value(ExprId id, ir::ConstId otherwise, Arra
 // One bit of the byte that holds it, the others as they are so far.
 bool InitialBuilder::set_bit(ExprId id, const Slot& slot, ir::TypeId type,
                              std::vector<ir::ConstElement>& elements) {
-  auto bit = sema_.ask<Constants>().fold_bits(id, slot.type, least_);
+  auto bit = ask<Constants>().fold_bits(id, slot.type, least_);
   if (!bit) return false;
   auto index = static_cast<uint32_t>(slot.member);
-  ir::ConstId before = sema_.ask<Constants>().member_default(type, index);
+  ir::ConstId before = ask<Constants>().member_default(type, index);
   for (const ir::ConstElement& element : elements) {
     if (element.first == index) before = element.value;
   }
@@ -209,9 +209,9 @@ InitialBuilder::Slot InitialBuilder::find_slot(ir::TypeId type, const Name& name
                 : sema_.program.types[type].members[field->member].type,
             field->bit};
   }
-  const VarId found = sema_.objects.find_parameter(*block, name.text);
+  const VarId found = ask<Objects>().find_parameter(*block, name.text);
   if (!found.valid()) return {};
-  const Variable& variable = sema_.resolve(found);
+  const Variable& variable = resolve(found);
   bool settable = variable.storage == Storage::kMember && variable.section != VarSection::kInOut &&
                   variable.section != VarSection::kExternal;
   return {settable ? static_cast<int32_t>(variable.index) : -1, variable.type, -1,
@@ -226,16 +226,16 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
     const Arg& arg = sema_.tree.args[expr.list.first + i];
     Slot slot = find_slot(type, arg.name);
     if (slot.fixed) {
-      sema_.error(DiagnosticCode::kAssignToConstant, arg.span,
-                  "`" + std::string(arg.name.text) + "` is a constant of `" +
-                      sema_.report.type_text(type) + "`: every instance has the same value",
-                  "declare it in VAR or VAR_INPUT to set it for each instance");
+      error(DiagnosticCode::kAssignToConstant, arg.span,
+            "`" + std::string(arg.name.text) + "` is a constant of `" +
+                sema_.report.type_text(type) + "`: every instance has the same value",
+            "declare it in VAR or VAR_INPUT to set it for each instance");
       return {};
     }
     if (slot.member < 0 || arg.output || !arg.value.valid()) {
-      sema_.error(DiagnosticCode::kUnknownMember, arg.span,
-                  "`" + sema_.report.type_text(type) + "` has no member `" +
-                      std::string(arg.name.text) + "` to initialise");
+      error(DiagnosticCode::kUnknownMember, arg.span,
+            "`" + sema_.report.type_text(type) + "` has no member `" + std::string(arg.name.text) +
+                "` to initialise");
       return {};
     }
     if (!slot.type.valid()) return {};
@@ -243,8 +243,8 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
     size_t number = index * 9 + static_cast<size_t>(slot.bit + 1);
     if (given.size() <= number) given.resize(number + 1);
     if (given[number]) {
-      sema_.error(DiagnosticCode::kDuplicateName, arg.span,
-                  "`" + std::string(arg.name.text) + "` is initialised twice");
+      error(DiagnosticCode::kDuplicateName, arg.span,
+            "`" + std::string(arg.name.text) + "` is initialised twice");
       return {};
     }
     given[number] = true;
@@ -252,8 +252,8 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
       if (!set_bit(arg.value, slot, type, value.elements)) return {};
       continue;
     }
-    ir::ConstId before = sema_.ask<Constants>().listed(otherwise, index);
-    if (!before.valid()) before = sema_.ask<Constants>().member_default(type, index);
+    ir::ConstId before = ask<Constants>().listed(otherwise, index);
+    if (!before.valid()) before = ask<Constants>().member_default(type, index);
     ir::ConstId init = this->value(arg.value, slot.type, before);
     if (!init.valid()) return {};
     value.elements.push_back({index, 1, init});
@@ -263,7 +263,7 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
 
 ir::ConstId Constants::initial_value(ExprId id, ir::TypeId type, ir::ConstId otherwise,
                                      Known least) {
-  return InitialBuilder(sema_, least).value(id, type, otherwise);
+  return InitialBuilder(sema_, scope_, least).value(id, type, otherwise);
 }
 
 }  // namespace frontend

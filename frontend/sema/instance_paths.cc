@@ -1,5 +1,6 @@
 #include "frontend/sema/instance_paths.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/types.h"
 #include "frontend/sema/variables.h"
 
@@ -53,7 +54,7 @@ void InstancePaths::configure(const std::vector<VarBlock>& blocks) {
 }
 
 bool InstancePaths::global(VarId id, Path& path) {
-  const Variable& variable = sema_.resolve(id);
+  const Variable& variable = resolve(id);
   sema_.declared.variables[id.index].used = sema_.declared.variables[id.index].written = true;
   const ir::Member& member = sema_.program.types[sema_.program.globals].members[variable.index];
   path.text = member.name;
@@ -85,7 +86,7 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
     path.type = sema_.program.instances[i].type;
     return true;
   }
-  if (VarId id = sema_.ask<Variables>().find_variable(expr); id.valid()) return global(id, path);
+  if (VarId id = ask<Variables>().find_variable(expr); id.valid()) return global(id, path);
   bool prefix = sema_.declared.resource != nullptr &&
                 ir::same_name(sema_.declared.resource->name.text, expr.name.text);
   bool config =
@@ -94,9 +95,9 @@ bool InstancePaths::head(const Expr& expr, Path& path) {
   NearestName nearest(expr.name.text);
   for (const ir::ProgramInstance& instance : sema_.program.instances) nearest.offer(instance.name);
   nearest.offer_all(sema_.declared.globals);
-  sema_.error(DiagnosticCode::kUnknownName, expr.span,
-              "`" + std::string(expr.name.text) + "` is no program instance and no global variable",
-              nearest.fix());
+  error(DiagnosticCode::kUnknownName, expr.span,
+        "`" + std::string(expr.name.text) + "` is no program instance and no global variable",
+        nearest.fix());
   return false;
 }
 
@@ -106,30 +107,30 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
   int32_t member = -1;
   VarId variable;
   if (const PouInfo* block = sema_.declared.pou_of(path.type)) {
-    const VarId found = sema_.objects.find_variable(block->number, expr.name.text);
-    if (found.valid() && sema_.resolve(found).view.global != AddressView::kNone) {
+    const VarId found = ask<Objects>().find_variable(block->number, expr.name.text);
+    if (found.valid() && resolve(found).view.global != AddressView::kNone) {
       return global(found, path);
     }
-    if (found.valid() && sema_.resolve(found).storage == Storage::kMember) {
+    if (found.valid() && resolve(found).storage == Storage::kMember) {
       variable = found;
-      path.fixed = path.fixed || has_known_value(sema_.resolve(found));
+      path.fixed = path.fixed || has_known_value(resolve(found));
       sema_.declared.variables[found.index].used = sema_.declared.variables[found.index].written =
           true;
-      member = static_cast<int32_t>(sema_.resolve(found).index);
+      member = static_cast<int32_t>(resolve(found).index);
     }
   } else {
     member = sema_.declared.find_member(path.type, expr.name.text);
   }
   if (member < 0) {
-    sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
-                "`" + sema_.report.type_text(path.type) + "` has no member `" +
-                    std::string(expr.name.text) + "`");
+    error(DiagnosticCode::kUnknownMember, expr.name.span,
+          "`" + sema_.report.type_text(path.type) + "` has no member `" +
+              std::string(expr.name.text) + "`");
     return false;
   }
   auto number = static_cast<uint32_t>(member);
   const ir::Member& chosen = sema_.program.types[path.type].members[number];
   path.address = chosen.address;
-  path.type = variable.valid() ? sema_.resolve(variable).type : chosen.type;
+  path.type = variable.valid() ? resolve(variable).type : chosen.type;
   path.text += "." + std::string(expr.name.text);
   path.steps.push_back(number);
   return path.type.valid();
@@ -138,19 +139,19 @@ bool InstancePaths::member(const Expr& expr, Path& path) {
 bool InstancePaths::element(const Expr& expr, Path& path) {
   if (path.text.empty() || sema_.program.types[path.type].kind != ir::Kind::kArray ||
       sema_.program.types[path.type].dims.size() != expr.list.count) {
-    sema_.error(DiagnosticCode::kNotArray, expr.span, "this path leads to no array of that form");
+    error(DiagnosticCode::kNotArray, expr.span, "this path leads to no array of that form");
     return false;
   }
   std::vector<ir::Dimension> dims = sema_.program.types[path.type].dims;
   uint64_t flat = 0;
   path.text += "[";
   for (uint32_t i = 0; i < dims.size(); ++i) {
-    auto index = sema_.ask<Constants>().fold_integer(sema_.tree.expr_lists[expr.list.first + i]);
+    auto index = ask<Constants>().fold_integer(sema_.tree.expr_lists[expr.list.first + i]);
     if (!index) return false;
     if (*index < dims[i].low || *index > dims[i].high) {
-      sema_.error(DiagnosticCode::kIndexOutOfBounds, expr.span,
-                  "index " + std::to_string(*index) + " is outside " + std::to_string(dims[i].low) +
-                      ".." + std::to_string(dims[i].high));
+      error(DiagnosticCode::kIndexOutOfBounds, expr.span,
+            "index " + std::to_string(*index) + " is outside " + std::to_string(dims[i].low) +
+                ".." + std::to_string(dims[i].high));
       return false;
     }
     path.text += (i == 0 ? "" : ",") + std::to_string(*index);
@@ -169,38 +170,37 @@ bool InstancePaths::walk(ExprId id, Path& path) {
     case ExprKind::kName:
       return head(expr, path);
     case ExprKind::kMember:
-      if (VarId found = sema_.namespaces.find_global(expr); found.valid())
+      if (VarId found = sema_.namespaces.find_global(scope_, expr); found.valid())
         return global(found, path);
       return walk(expr.operand, path) && member(expr, path);
     case ExprKind::kIndex:
       return walk(expr.operand, path) && element(expr, path);
     case ExprKind::kDirect:
-      if (const AddressView* shared = direct_view(sema_, expr)) {
+      if (const AddressView* shared = direct_view(*this, expr)) {
         path.global = true;
         view(*shared, path);
         return true;
       }
-      path.root = sema_.ask<Variables>().direct_member(expr);
+      path.root = ask<Variables>().direct_member(expr);
       path.text = sema_.program.types[sema_.program.globals].members[path.root].name;
       path.global = true;
-      path.type = sema_.ask<Variables>().type_of_direct(sema_.tree.directs[expr.number].address);
+      path.type = ask<Variables>().type_of_direct(sema_.tree.directs[expr.number].address);
       return true;
     default:
-      sema_.error(DiagnosticCode::kUnknownName, expr.span,
-                  "a path names a program instance and its variables");
+      error(DiagnosticCode::kUnknownName, expr.span,
+            "a path names a program instance and its variables");
       return false;
   }
 }
 
 bool InstancePaths::check_type(const VarDecl& decl, const Path& path) {
-  TypeUse use = sema_.ask<Types>().resolve_type(decl.spec);
+  TypeUse use = ask<Types>().resolve_type(decl.spec);
   if (!use.type.valid()) return false;
   if (path.text.empty() || use.type != path.type) {
-    sema_.error(DiagnosticCode::kTypeMismatch, sema_.tree[decl.path].span,
-                path.text.empty()
-                    ? "the path ends at the resource"
-                    : "`" + path.text + "` is `" + sema_.report.type_text(path.type) +
-                          "`, declared here as `" + sema_.report.type_text(use.type) + "`");
+    error(DiagnosticCode::kTypeMismatch, sema_.tree[decl.path].span,
+          path.text.empty() ? "the path ends at the resource"
+                            : "`" + path.text + "` is `" + sema_.report.type_text(path.type) +
+                                  "`, declared here as `" + sema_.report.type_text(use.type) + "`");
     return false;
   }
   return true;
@@ -212,11 +212,10 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
   if (decl.has_address && !decl.incomplete) {
     bool open =
         path.address.bit_offset == ir::kOpenAddress && path.address.area == decl.address.area;
-    std::string problem =
-        open ? sema_.ask<Variables>().address_problem(path.type, decl.address, false)
-             : "is not declared with AT %I*, %Q* or %M* of this area";
+    std::string problem = open ? ask<Variables>().address_problem(path.type, decl.address, false)
+                               : "is not declared with AT %I*, %Q* or %M* of this area";
     if (!problem.empty()) {
-      sema_.error(DiagnosticCode::kBadAddress, decl.span, "`" + path.text + "` " + problem);
+      error(DiagnosticCode::kBadAddress, decl.span, "`" + path.text + "` " + problem);
       return;
     }
     sema_.program.located.push_back({path.text, decl.address});
@@ -224,9 +223,9 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
   }
   if (!decl.init.valid()) return;
   if (path.fixed) {
-    sema_.error(DiagnosticCode::kAssignToConstant, decl.span,
-                "`" + path.text + "` is a constant: it is what its declaration says",
-                "declare it in VAR or VAR_INPUT to set it here");
+    error(DiagnosticCode::kAssignToConstant, decl.span,
+          "`" + path.text + "` is a constant: it is what its declaration says",
+          "declare it in VAR or VAR_INPUT to set it here");
     return;
   }
   auto configure = [&](ir::ConstId before, ir::TypeId type) {
@@ -247,11 +246,11 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
 ir::ConstId InstancePaths::with_initial(ir::ConstId before, ir::TypeId type,
                                         const std::vector<uint32_t>& steps, size_t at,
                                         ExprId init) {
-  if (at == steps.size()) return sema_.ask<Constants>().initial_value(init, type, before);
+  if (at == steps.size()) return ask<Constants>().initial_value(init, type, before);
   uint32_t step = steps[at];
   bool array = sema_.program.types[type].kind == ir::Kind::kArray;
-  ir::ConstId inner = sema_.ask<Constants>().listed(before, step);
-  if (!inner.valid() && !array) inner = sema_.ask<Constants>().member_default(type, step);
+  ir::ConstId inner = ask<Constants>().listed(before, step);
+  if (!inner.valid() && !array) inner = ask<Constants>().member_default(type, step);
   ir::TypeId part =
       array ? sema_.program.types[type].base : sema_.program.types[type].members[step].type;
   ir::ConstId made = with_initial(inner, part, steps, at + 1, init);
@@ -268,8 +267,8 @@ void InstancePaths::add_access(const VarDecl& decl) {
   if (!check_type(decl, path)) return;
   for (const ir::AccessPath& other : sema_.program.access) {
     if (!ir::same_name(other.name, decl.names[0].text)) continue;
-    sema_.error(DiagnosticCode::kDuplicateName, decl.names[0].span,
-                "`" + other.name + "` is declared twice");
+    error(DiagnosticCode::kDuplicateName, decl.names[0].span,
+          "`" + other.name + "` is declared twice");
     return;
   }
   sema_.program.access.push_back({std::string(decl.names[0].text), path.text, decl.writable});
@@ -339,12 +338,12 @@ void InstancePaths::check_members(ir::TypeId type, const std::string& prefix, ba
     VarId variable;
     bool declared = type == sema_.program.globals && i < sema_.declared.global_order.size();
     if (declared) variable = sema_.declared.global_order[i];
-    if (block != nullptr) variable = sema_.objects.member_variable(*block, i);
-    if (variable.valid()) here = sema_.resolve(variable).name.span;
+    if (block != nullptr) variable = ask<Objects>().member_variable(*block, i);
+    if (variable.valid()) here = resolve(variable).name.span;
     if (open && !known.contains(ir::fold_name(path))) {
-      sema_.error(DiagnosticCode::kOpenAddress, here, "`" + path + "` has no address yet",
-                  "add VAR_CONFIG " + path + " AT " + example_address(members[i].address) + " : " +
-                      sema_.report.type_text(members[i].type) + "; END_VAR");
+      error(DiagnosticCode::kOpenAddress, here, "`" + path + "` has no address yet",
+            "add VAR_CONFIG " + path + " AT " + example_address(members[i].address) + " : " +
+                sema_.report.type_text(members[i].type) + "; END_VAR");
     }
     if (inside) check_part(members[i].type, path, here, known);
   }

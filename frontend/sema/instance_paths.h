@@ -8,15 +8,13 @@
 #include <unordered_set>
 #include <vector>
 
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 
-class Sema;
-
-class InstancePaths {
+class InstancePaths : public Phase {
  public:
-  explicit InstancePaths(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   // The VAR_CONFIG and VAR_ACCESS among `blocks`, when all instances are there.
   void configure(const std::vector<VarBlock>& blocks);
@@ -43,7 +41,6 @@ class InstancePaths {
   void check_members(ir::TypeId type, const std::string& prefix, base::SourceSpan span,
                      const Known& known);
 
-  Sema& sema_;
   std::unordered_map<ir::TypeId, bool> holds_open_;
 };
 

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "frontend/sema/interfaces.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/open_functions.h"
 #include "frontend/sema/sema.h"
@@ -53,14 +54,14 @@ void Interfaces::resolve_declarations() {
   for (const TypeDecl& decl : sema_.tree.types) {
     if (!sema_.library.holds(decl.name.span)) ask<Types>().resolve_type(decl.spec);
   }
-  OldNames(sema_).rename_types();
+  ask<OldNames>().rename_types();
   SharedAddresses(sema_).find();
   resolve_globals();
   // Grows while library blocks are discovered.
   for (uint32_t i = 0; i < sema_.declared.pous.size(); ++i) resolve_interface(i);
   sema_.declared.complete = true;
   ask<OpenFunctions>().check_overloads();
-  sema_.objects.check();
+  ask<Objects>().check();
   ask<Types>().check_containment();
 }
 
@@ -78,7 +79,7 @@ void Interfaces::resolve_globals() {
 
 ir::Member Interfaces::member_of(const Variable& variable, ir::Section section) {
   ir::Member member;
-  member.old_name = OldNames(sema_).of(variable);
+  member.old_name = ask<OldNames>().of(variable);
   if (!variable.list.empty()) member.name = std::string(variable.list) + ".";
   if (!variable.method.empty()) member.name = std::string(variable.method) + "#";
   member.name += variable.name.text;

@@ -10,11 +10,10 @@ namespace {}  // namespace
 
 // Quiet for plain names.
 bool Objects::names_method(const Expr& expr) {
-  uint32_t owner = sema_.declared.block_of(sema_.scope_);
-  if (expr.kind == ExprKind::kName && sema_.ask<Variables>().find_variable(expr).valid())
-    return false;
+  uint32_t owner = sema_.declared.block_of(scope_);
+  if (expr.kind == ExprKind::kName && ask<Variables>().find_variable(expr).valid()) return false;
   if (expr.kind == ExprKind::kMember) {
-    if (sema_.namespaces.is_scope(sema_.tree[expr.operand])) return false;
+    if (sema_.namespaces.is_scope(scope_, sema_.tree[expr.operand])) return false;
     owner = receiver(expr.operand);
   }
   return owner != kNoPou && find_code(owner, expr.name.text).code.method != kNoPou;
@@ -22,7 +21,7 @@ bool Objects::names_method(const Expr& expr) {
 
 // Was a message given for it?
 bool Objects::damaged(ExprId id) {
-  return !sema_.namespaces.is_scope(sema_.tree[id]) && !sema_.infer(id).type.valid();
+  return !sema_.namespaces.is_scope(scope_, sema_.tree[id]) && !infer(id).type.valid();
 }
 
 // The method or action of that name; nullopt: there is none. Reports when it may not be used.
@@ -43,9 +42,9 @@ Callee Objects::base_body(const Expr& head) {
   const uint32_t base = super(head.span);
   if (base == kNoPou) return callee;
   if (sema_.declared.pous[base].decl->kind == PouKind::kClass) {
-    sema_.error(DiagnosticCode::kNotCallable, head.span,
-                quoted(sema_.declared.pous[base].decl->name) + " is a class and has no body",
-                "call a method of it");
+    error(DiagnosticCode::kNotCallable, head.span,
+          quoted(sema_.declared.pous[base].decl->name) + " is a class and has no body",
+          "call a method of it");
     return callee;
   }
   callee.kind = Callee::Kind::kBase;
@@ -56,14 +55,14 @@ Callee Objects::base_body(const Expr& head) {
 // A function or method inside of itself.
 Callee Objects::itself(const Expr& head) {
   Callee callee;
-  const PouInfo& own = *sema_.scope_.pou;
+  const PouInfo& own = *scope_.pou;
   if (recursion_depth(*own.decl) == 0) {
-    sema_.error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
-                "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
+    error(DiagnosticCode::kRecursiveCall, head.span, quoted(head.name) + " calls itself",
+          "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
     return callee;
   }
   callee.kind = own.owner == kNoPou ? Callee::Kind::kFunction : Callee::Kind::kMethod;
-  callee.pou = sema_.scope_.number();
+  callee.pou = scope_.number();
   return callee;
 }
 
@@ -72,48 +71,48 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   const bool own = is_own(sema_.tree[expr.operand]);
   const PouInfo& block = sema_.declared.pous[owner];
   if (VarId id = find_variable(owner, expr.name.text); id.valid()) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = resolve(id);
     if (own) {
       check_access(variable.access, variable.pou, expr.name);
-      return sema_.ask<Expressions>().variable_note(id);
+      return ask<Expressions>().variable_note(id);
     }
     bool open = variable.access == Access::kPublic || variable.access == Access::kInternal;
-    if (sema_.in_test() && variable.section != VarSection::kInOut) {
+    if (in_test() && variable.section != VarSection::kInOut) {
       if (variable.storage == Storage::kGlobal)
-        return sema_.ask<Expressions>().variable_note(id);  // VAR_STAT
+        return ask<Expressions>().variable_note(id);  // VAR_STAT
       open = variable.section != VarSection::kExternal;
     }
     if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
       sema_.mark_used(id);
       check_access(variable.access, variable.pou, expr.name);
-      if (variable.storage == Storage::kGlobal) return sema_.ask<Expressions>().variable_note(id);
+      if (variable.storage == Storage::kGlobal) return ask<Expressions>().variable_note(id);
       note.type = variable.type;
       return note;
     }
-    sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
-                quoted(expr.name) + (sema_.in_test() ? " lies outside of " : " is private to ") +
-                    quoted(block.decl->name),
-                sema_.in_test() ? "name the variable that it stands for"
-                                : "only VAR_INPUT and VAR_OUTPUT are visible outside; declare it "
-                                  "there");
+    error(DiagnosticCode::kUnknownMember, expr.name.span,
+          quoted(expr.name) + (in_test() ? " lies outside of " : " is private to ") +
+              quoted(block.decl->name),
+          in_test() ? "name the variable that it stands for"
+                    : "only VAR_INPUT and VAR_OUTPUT are visible outside; declare it "
+                      "there");
     return {};
   }
-  if (sema_.in_test() && block.names.contains(expr.name.text)) {
-    sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
-                quoted(expr.name) + " lives only while " + quoted(block.decl->name) + " runs",
-                "keep what the test asks for in VAR or VAR_OUTPUT");
+  if (in_test() && block.names.contains(expr.name.text)) {
+    error(DiagnosticCode::kUnknownMember, expr.name.span,
+          quoted(expr.name) + " lives only while " + quoted(block.decl->name) + " runs",
+          "keep what the test asks for in VAR or VAR_OUTPUT");
     return {};
   }
   if (Found found = find_code(owner, expr.name.text); found.owner != kNoPou) {
     if (found.code.is_property()) return infer_property(expr.name, found);
-    sema_.error(DiagnosticCode::kNotAValue, expr.name.span,
-                quoted(expr.name) + " is a method of " + quoted(block.decl->name),
-                "call it: `" + std::string(expr.name.text) + "()`");
+    error(DiagnosticCode::kNotAValue, expr.name.span,
+          quoted(expr.name) + " is a method of " + quoted(block.decl->name),
+          "call it: `" + std::string(expr.name.text) + "()`");
     return {};
   }
-  sema_.error(DiagnosticCode::kUnknownMember, expr.name.span,
-              quoted(block.decl->name) + " has no member " + quoted(expr.name),
-              suggestion(owner, expr.name.text));
+  error(DiagnosticCode::kUnknownMember, expr.name.span,
+        quoted(block.decl->name) + " has no member " + quoted(expr.name),
+        suggestion(owner, expr.name.text));
   return {};
 }
 
@@ -134,7 +133,7 @@ Note Objects::infer_property(const Name& name, const Found& found) {
   note.property = found.owner;
   note.calls = true;
   note.can_trap = true;
-  note.type = sema_.resolve(value).type;
+  note.type = resolve(value).type;
   return note;
 }
 

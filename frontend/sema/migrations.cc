@@ -21,8 +21,8 @@ constexpr std::string_view kGlobalsName = "VAR_GLOBAL";
 
 }  // namespace
 
-void Migrations::error(base::SourceSpan span, std::string text, std::string fix) {
-  sema_.error(DiagnosticCode::kBadMigration, span, std::move(text), std::move(fix));
+void Migrations::refuse(base::SourceSpan span, std::string text, std::string fix) {
+  error(DiagnosticCode::kBadMigration, span, std::move(text), std::move(fix));
 }
 
 void Migrations::collect() {
@@ -37,20 +37,21 @@ void Migrations::collect() {
   for (const Attribute& attribute : sema_.tree.attributes) {
     const bool stray = ir::same_name(attribute.name.text, kMigrationAttribute) &&
                        !seen.contains(attribute.name.span.begin.offset);
-    if (stray) error(attribute.name.span, "this stands before no FUNCTION", "put it before one");
+    if (stray) refuse(attribute.name.span, "this stands before no FUNCTION", "put it before one");
   }
 }
 
 void Migrations::add(PouInfo& info, const Attribute& rule) {
   if (info.decl->kind != PouKind::kFunction || info.open || info.owner != kNoPou) {
-    return error(rule.name.span,
-                 quoted(info.name) + " is no FUNCTION with parameters of fixed types",
-                 "let a FUNCTION compute the values");
+    return refuse(rule.name.span,
+                  quoted(info.name) + " is no FUNCTION with parameters of fixed types",
+                  "let a FUNCTION compute the values");
   }
   if (!rule.has_value) {
-    return error(rule.name.span, "this pragma cannot be read",
-                 "write {migration of := 'Type'}, with `, from := 'Other'` where it was of another "
-                 "type, and `, inverse` for the way back");
+    return refuse(
+        rule.name.span, "this pragma cannot be read",
+        "write {migration of := 'Type'}, with `, from := 'Other'` where it was of another "
+        "type, and `, inverse` for the way back");
   }
   ir::Migration row;
   row.function = info.id;
@@ -59,7 +60,7 @@ void Migrations::add(PouInfo& info, const Attribute& rule) {
   if (!row.type.valid() || !read_other(row, rule)) return;
   bool gives = false;
   for (VarId id : info.locals) {
-    const Variable& variable = sema_.resolve(id);
+    const Variable& variable = resolve(id);
     const bool parameter = variable.section == VarSection::kInput ||
                            variable.section == VarSection::kOutput ||
                            variable.section == VarSection::kInOut;
@@ -68,8 +69,8 @@ void Migrations::add(PouInfo& info, const Attribute& rule) {
     gives = gives || variable.section == VarSection::kOutput;
   }
   if (!gives && row.from.empty()) {
-    return error(info.decl->name.span, quoted(info.name) + " gives no value",
-                 "declare VAR_OUTPUT with the name of the variable that it makes");
+    return refuse(info.decl->name.span, quoted(info.name) + " gives no value",
+                  "declare VAR_OUTPUT with the name of the variable that it makes");
   }
   sema_.program.migrations.push_back(std::move(row));
 }
@@ -80,14 +81,14 @@ ir::TypeId Migrations::type_of(const Attribute& rule) {
   const bool good = found != nullptr && found->self.valid() && found->owner == kNoPou &&
                     found->decl->kind != PouKind::kInterface;
   if (good) return found->self;
-  const std::optional<TypeUse> type = sema_.ask<Types>().find_type(rule.value);
+  const std::optional<TypeUse> type = ask<Types>().find_type(rule.value);
   const ir::TypeTable& types = sema_.program.types;
   const bool structure = type && type->type.valid() &&
                          types[type->type].kind == ir::Kind::kStruct &&
                          !types[type->type].name.empty();
   if (structure && !types.overlaps(type->type)) return type->type;
-  error(rule.name.span, quoted(rule.value) + " is no program, function block or structure",
-        "name the one whose variables migrate, or VAR_GLOBAL");
+  refuse(rule.name.span, quoted(rule.value) + " is no program, function block or structure",
+         "name the one whose variables migrate, or VAR_GLOBAL");
   return {};
 }
 
@@ -100,23 +101,23 @@ bool Migrations::read_other(ir::Migration& row, const Attribute& rule) {
   ir::TypeId other;
   if (const PouInfo* found = sema_.declared.find_pou(rule.from); found != nullptr) {
     other = found->self;
-  } else if (const std::optional<TypeUse> type = sema_.ask<Types>().find_type(rule.from)) {
+  } else if (const std::optional<TypeUse> type = ask<Types>().find_type(rule.from)) {
     other = type->type;
   }
   if (other.valid()) row.from = types[other].name;
   const bool is_other = row.type != sema_.program.globals && !ir::same_name(row.from, name);
   if (is_other && (!other.valid() || types[other].kind == types[row.type].kind)) return true;
-  error(rule.name.span,
-        quoted(rule.from) + " is nothing that " + quoted(rule.value) + " can have been",
-        "name another type of the same kind: a structure, a function block or a program");
+  refuse(rule.name.span,
+         quoted(rule.from) + " is nothing that " + quoted(rule.value) + " can have been",
+         "name another type of the same kind: a structure, a function block or a program");
   return false;
 }
 
 bool Migrations::add_value(ir::Migration& row, const Variable& variable) {
   const bool input = variable.section == VarSection::kInput;
   if (variable.section == VarSection::kInOut) {
-    error(variable.name.span, quoted(variable.name.text) + " goes both ways",
-          "take VAR_INPUT for what is read and VAR_OUTPUT for what is made");
+    refuse(variable.name.span, quoted(variable.name.text) + " goes both ways",
+           "take VAR_INPUT for what is read and VAR_OUTPUT for what is made");
     return false;
   }
   const bool is_old = input != row.inverse;
@@ -126,18 +127,18 @@ bool Migrations::add_value(ir::Migration& row, const Variable& variable) {
       sema_.tree.find_attribute(variable.decl->attributes, is_old ? "new" : "old");
   if (wrong != nullptr || (own != nullptr && !own->has_value)) {
     const char* fix = is_old ? "write {old := 'name'}" : "write {new := 'name'}";
-    error((wrong != nullptr ? wrong : own)->name.span,
-          quoted(variable.name.text) + " is a variable of the " + (is_old ? "old" : "new") +
-              " version",
-          fix);
+    refuse((wrong != nullptr ? wrong : own)->name.span,
+           quoted(variable.name.text) + " is a variable of the " + (is_old ? "old" : "new") +
+               " version",
+           fix);
     return false;
   }
   const std::string name(own != nullptr ? own->value : variable.name.text);
   if (!variable.type.valid()) return false;
   if (!is_plain(variable.type, 0)) {
-    error(variable.name.span,
-          quoted(variable.name.text) + " is a reference or holds one; it would mean nothing here",
-          "migrate plain data");
+    refuse(variable.name.span,
+           quoted(variable.name.text) + " is a reference or holds one; it would mean nothing here",
+           "migrate plain data");
     return false;
   }
   if (!is_old && !is_new_member(row, variable, name)) return false;
@@ -145,7 +146,7 @@ bool Migrations::add_value(ir::Migration& row, const Variable& variable) {
     return !input && other.output && ir::same_name(other.member, name);
   });
   if (twice) {
-    error(variable.name.span, quoted(name) + " is given twice", "take one of the outputs away");
+    refuse(variable.name.span, quoted(name) + " is given twice", "take one of the outputs away");
     return false;
   }
   row.values.push_back({std::string(variable.name.text), name, !input});
@@ -158,21 +159,21 @@ bool Migrations::is_new_member(const ir::Migration& row, const Variable& variabl
   const ir::TypeTable& types = sema_.program.types;
   const int32_t number = types.find_member(row.type, name);
   if (number < 0) {
-    error(variable.name.span, quoted(types.text(row.type)) + " has no variable " + quoted(name),
-          "give the parameter its name, or write {new := 'name'} before it");
+    refuse(variable.name.span, quoted(types.text(row.type)) + " has no variable " + quoted(name),
+           "give the parameter its name, or write {new := 'name'} before it");
     return false;
   }
   const ir::Member& member = types[row.type].members[static_cast<size_t>(number)];
   if (member.section == ir::Section::kInOut || member.constant || types.is_instance(member.type)) {
-    error(variable.name.span, quoted(name) + " holds no value that could migrate",
-          "name a variable of data");
+    refuse(variable.name.span, quoted(name) + " holds no value that could migrate",
+           "name a variable of data");
     return false;
   }
   if (member.type == variable.type) return true;
-  error(variable.name.span,
-        quoted(name) + " is " + types.text(member.type) + ", " + quoted(variable.name.text) +
-            " is " + types.text(variable.type),
-        "declare it as " + types.text(member.type));
+  refuse(variable.name.span,
+         quoted(name) + " is " + types.text(member.type) + ", " + quoted(variable.name.text) +
+             " is " + types.text(variable.type),
+         "declare it as " + types.text(member.type));
   return false;
 }
 
@@ -199,10 +200,10 @@ void Migrations::check_function(const ir::Migration& row) {
     for (const ir::Place& place : pou.places) {
       if (place.base != ir::PlaceBase::kGlobal || place.steps.empty()) continue;
       const ir::Member& global = program.types[program.globals].members[place.steps[0].index];
-      return error(info.decl->name.span,
-                   quoted(pou.name) + " uses " + quoted(global.name) +
-                       ", but a migration has nothing but its parameters",
-                   "take the value as a parameter");
+      return refuse(info.decl->name.span,
+                    quoted(pou.name) + " uses " + quoted(global.name) +
+                        ", but a migration has nothing but its parameters",
+                    "take the value as a parameter");
     }
     for (const ir::Block& block : pou.blocks) {
       for (const ir::Inst& inst : block.insts) {

@@ -3,15 +3,13 @@
 // docs/adr/0014-migrations.md).
 #pragma once
 
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 
-class Sema;
-
-class Migrations {
+class Migrations : public Phase {
  public:
-  explicit Migrations(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   // After all interfaces: fills Program::migrations.
   void collect();
@@ -26,9 +24,7 @@ class Migrations {
   bool is_new_member(const ir::Migration& row, const Variable& variable, const std::string& name);
   bool is_plain(ir::TypeId type, uint32_t depth) const;
   void check_function(const ir::Migration& row);
-  void error(base::SourceSpan span, std::string text, std::string fix);
-
-  Sema& sema_;
+  void refuse(base::SourceSpan span, std::string text, std::string fix);
 };
 
 }  // namespace frontend

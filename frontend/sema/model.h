@@ -285,6 +285,28 @@ struct PouInfo {
   std::vector<OuterUse> outer_uses;
 };
 
+// What __NEW takes from (pools.h).
+struct Pool {
+  std::string_view name;    // of the type, qualified
+  ir::TypeId type;          // what a pointer to an element points to
+  uint32_t block = kNoPou;  // of the instances
+  bool boxed = false;
+  uint32_t count = 0;
+  VarId elements;  // ARRAY[1..count] OF the block
+  VarId states;    // ARRAY[1..count] OF BYTE: kPoolFree and so on
+};
+
+// Store: all pools, and what start code visits (objects.h).
+struct Pooled {
+  std::vector<Pool> all;
+  bool declared = false;
+};
+struct Started {
+  std::unordered_map<ir::TypeId, bool> constructs;  // are there instances in it to be visited?
+  std::vector<VarId> globals;                       // what __START begins with, then programs
+  VarId change_flag;  // a global, not 0 where a change is what start code runs for
+};
+
 // Whose names are visible. A value: who resolves something of another POU makes another one.
 struct PouScope {
   PouScope() = default;  // outside of all POUs

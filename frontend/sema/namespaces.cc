@@ -115,8 +115,8 @@ std::string_view Namespaces::declare(NameSort sort, ScopeId scope, const Name& n
   declared_[static_cast<size_t>(sort)].emplace(whole, Declared{scope, access});
   const bool clashes = sort == NameSort::kDeclaration || sort == NameSort::kVariable;
   if (clashes && known_.contains(whole)) {
-    sema_.error(DiagnosticCode::kDuplicateName, name.span, quoted(whole) + " is a namespace",
-                "give one of them another name");
+    sema_.report.error({}, DiagnosticCode::kDuplicateName, name.span,
+                       quoted(whole) + " is a namespace", "give one of them another name");
   }
   return whole;
 }
@@ -125,9 +125,9 @@ void Namespaces::check() {
   for (const Scope& scope : sema_.tree.scopes) {
     if (scope.name.empty()) continue;
     if (fits(paths_[scope.parent.index], scope.name.text)) continue;
-    sema_.error(DiagnosticCode::kTooComplex, scope.name.span,
-                "the name of this namespace, with those around it, has more than " +
-                    std::to_string(base::kMaxIdentifier) + " characters");
+    sema_.report.error({}, DiagnosticCode::kTooComplex, scope.name.span,
+                       "the name of this namespace, with those around it, has more than " +
+                           std::to_string(base::kMaxIdentifier) + " characters");
     return;
   }
   for (Region& region : regions_) {
@@ -136,9 +136,10 @@ void Namespaces::check() {
     if (region.used <= base::kMaxUsings) {
       for (Range32 written : region.written) resolve_using(region, written);
     } else if (around <= base::kMaxUsings) {
-      sema_.error(DiagnosticCode::kTooComplex, sema_.tree.names[region.written[0].first].span,
-                  std::to_string(region.used) + " namespaces by USING",
-                  "use at most " + std::to_string(base::kMaxUsings));
+      sema_.report.error({}, DiagnosticCode::kTooComplex,
+                         sema_.tree.names[region.written[0].first].span,
+                         std::to_string(region.used) + " namespaces by USING",
+                         "use at most " + std::to_string(base::kMaxUsings));
     }
   }
 }
@@ -155,8 +156,8 @@ void Namespaces::resolve_using(Region& region, Range32 written) {
   if (stdlib::is_vendor_library(path)) return;
   NearestName nearest(path);
   nearest.offer_all(known_);
-  sema_.error(DiagnosticCode::kUnknownName, sema_.tree.names[written.first].span,
-              quoted(path) + " is not a namespace", nearest.fix());
+  sema_.report.error({}, DiagnosticCode::kUnknownName, sema_.tree.names[written.first].span,
+                     quoted(path) + " is not a namespace", nearest.fix());
 }
 
 bool Namespaces::inside(base::SourcePos at, ScopeId scope) const {
@@ -209,10 +210,10 @@ Namespaces::Table::const_iterator Namespaces::find_used(NameSort sort, const Nam
       } else if (sort == NameSort::kLiteral) {
         several_.insert(name.span.begin.offset);
       } else if (first_report(name.span)) {
-        sema_.error(DiagnosticCode::kAmbiguousName, name.span,
-                    quoted(name.text) + " may be " + quoted(first->first) + " or " +
-                        quoted(found->first) + ", by USING",
-                    "write the whole name");
+        sema_.report.error({}, DiagnosticCode::kAmbiguousName, name.span,
+                           quoted(name.text) + " may be " + quoted(first->first) + " or " +
+                               quoted(found->first) + ", by USING",
+                           "write the whole name");
       }
     }
   }
@@ -258,9 +259,9 @@ std::optional<std::string_view> Namespaces::closed_to(const Declared& declared,
 void Namespaces::report_internal(std::string_view name, std::string_view path,
                                  base::SourceSpan span) {
   if (!first_report(span)) return;
-  sema_.error(DiagnosticCode::kNotAccessible, span,
-              quoted(name) + " is INTERNAL in the namespace " + quoted(path),
-              "only code of that namespace uses it");
+  sema_.report.error({}, DiagnosticCode::kNotAccessible, span,
+                     quoted(name) + " is INTERNAL in the namespace " + quoted(path),
+                     "only code of that namespace uses it");
 }
 
 bool Namespaces::first_report(base::SourceSpan span) {
@@ -292,8 +293,8 @@ std::string Namespaces::path_of(const Expr& expr) const {
   return path;
 }
 
-bool Namespaces::is_namespace(const Expr& expr) {
-  return is_path(expr) && !sema_.ask<Variables>().find_variable(*head_of(expr)).valid();
+bool Namespaces::is_namespace(const PouScope& scope, const Expr& expr) {
+  return is_path(expr) && !Variables(sema_, scope).find_variable(*head_of(expr)).valid();
 }
 
 bool Namespaces::is_path(const Expr& expr) const {
@@ -315,33 +316,33 @@ VarId Namespaces::find_global(const Name& name) {
   return found == sema_.declared.globals.end() ? VarId() : found->second;
 }
 
-VarId Namespaces::find_global(const Expr& member) {
+VarId Namespaces::find_global(const PouScope& scope, const Expr& member) {
   const Expr& operand = sema_.tree[member.operand];
-  if (const GlobalList* variables = list(operand)) {
+  if (const GlobalList* variables = list(scope, operand)) {
     auto found = variables->names.find(member.name.text);
     if (found != variables->names.end()) return found->second;
   }
-  if (!is_namespace(operand)) return {};
-  auto found = sema_.declared.globals.find(find(NameSort::kVariable, member));
+  if (!is_namespace(scope, operand)) return {};
+  auto found = sema_.declared.globals.find(find(NameSort::kVariable, scope, member));
   return found == sema_.declared.globals.end() ? VarId() : found->second;
 }
 
-const GlobalList* Namespaces::list(const Expr& head) {
+const GlobalList* Namespaces::list(const PouScope& scope, const Expr& head) {
   const bool plain = head.kind == ExprKind::kName;
-  if (plain && (head.global || sema_.ask<Variables>().find_variable(head.name).valid()))
+  if (plain && (head.global || Variables(sema_, scope).find_variable(head.name).valid()))
     return nullptr;
-  auto found = sema_.declared.lists.find(find(NameSort::kList, head));
+  auto found = sema_.declared.lists.find(find(NameSort::kList, scope, head));
   return found == sema_.declared.lists.end() ? nullptr : &found->second;
 }
 
-bool Namespaces::declares(const Expr& expr) {
-  return expr.kind == ExprKind::kMember && is_namespace(sema_.tree[expr.operand]) &&
-         !find_global(expr).valid();
+bool Namespaces::declares(const PouScope& scope, const Expr& expr) {
+  return expr.kind == ExprKind::kMember && is_namespace(scope, sema_.tree[expr.operand]) &&
+         !find_global(scope, expr).valid();
 }
 
-std::string_view Namespaces::find(NameSort sort, const Expr& expr) {
+std::string_view Namespaces::find(NameSort sort, const PouScope& scope, const Expr& expr) {
   if (expr.kind == ExprKind::kName) return find(sort, expr.name);
-  if (expr.kind != ExprKind::kMember || !is_namespace(sema_.tree[expr.operand])) return {};
+  if (expr.kind != ExprKind::kMember || !is_namespace(scope, sema_.tree[expr.operand])) return {};
   return find(sort, keep(path_of(expr)), {head_of(expr)->span.begin, expr.name.span.end});
 }
 

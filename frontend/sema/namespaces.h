@@ -37,23 +37,25 @@ class Namespaces {
   std::string_view find(NameSort sort, const Name& name);
   std::string_view find(NameSort sort, Range32 qualifiers, const Name& name);
   // The full name that `x` or `A.B.x` means in code; "": it is neither, or `A.B` is no namespace.
-  std::string_view find(NameSort sort, const Expr& expr);
+  std::string_view find(NameSort sort, const PouScope& scope, const Expr& expr);
   // The global variable of that name; invalid: there is none.
   VarId find_global(const Name& name);
   // The same for `A.x` or `List.x` in code.
-  VarId find_global(const Expr& member);
+  VarId find_global(const PouScope& scope, const Expr& member);
   // The list of globals that `L` or `A.L` in code means; null: it means none.
-  const GlobalList* list(const Expr& head);
+  const GlobalList* list(const PouScope& scope, const Expr& head);
   // Is `A.f` in code a name of a namespace, and of no variable there?
-  bool declares(const Expr& expr);
+  bool declares(const PouScope& scope, const Expr& expr);
   // A list of globals or a namespace: what stands after the dot is no member of a value.
-  bool is_scope(const Expr& head) { return list(head) != nullptr || is_namespace(head); }
+  bool is_scope(const PouScope& scope, const Expr& head) {
+    return list(scope, head) != nullptr || is_namespace(scope, head);
+  }
   // Do several USINGs give this literal? Then its context decides, as among enumerations.
   bool is_ambiguous(const Name& literal) const {
     return several_.contains(literal.span.begin.offset);
   }
   // Does `A.B` in code name a namespace?
-  bool is_namespace(const Expr& expr);
+  bool is_namespace(const PouScope& scope, const Expr& expr);
   // The same when no variable hides it.
   bool is_path(const Expr& expr) const;
   // Is the place inside of the namespace that `scope` is?

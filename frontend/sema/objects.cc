@@ -36,8 +36,8 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   const bool taken = slot != kNoPou || (accessor ? code.method != kNoPou : code.is_property()) ||
                      owner.names.contains(decl.name.text);
   if (taken) {
-    sema_.error(DiagnosticCode::kDuplicateName, decl.name.span,
-                quoted(decl.name) + " is declared twice in " + quoted(owner.decl->name));
+    error(DiagnosticCode::kDuplicateName, decl.name.span,
+          quoted(decl.name) + " is declared twice in " + quoted(owner.decl->name));
     return;
   }
   slot = static_cast<uint32_t>(sema_.declared.pous.size());
@@ -52,8 +52,8 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   info.owner = block;
   info.self = owner.self;
   if (owner.meaning != nullptr) info.meaning = std::make_unique<Meaning>();
-  sema_.ask<Collection>().add_code(info, code_name(sema_.program.types[owner.self].name, decl));
-  sema_.ask<Collection>().collect_interface(info.number);
+  ask<Collection>().add_code(info, code_name(sema_.program.types[owner.self].name, decl));
+  ask<Collection>().collect_interface(info.number);
 }
 
 VarId Objects::find_variable(uint32_t block, std::string_view name) const {
@@ -69,8 +69,8 @@ VarId Objects::find_variable(uint32_t block, std::string_view name) const {
 }
 
 bool Objects::in_action_of(uint32_t block) const {
-  if (sema_.scope_.pou == nullptr) return false;
-  const PouInfo& current = *sema_.scope_.pou;
+  if (scope_.pou == nullptr) return false;
+  const PouInfo& current = *scope_.pou;
   return current.owner == block && current.decl->kind == PouKind::kAction;
 }
 

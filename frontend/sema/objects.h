@@ -9,19 +9,18 @@
 
 #include "base/diagnostics.h"
 #include "frontend/sema/callee.h"
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 
-class Sema;
 inline constexpr std::string_view kFbInit = "FB_Init";
 inline constexpr std::string_view kFbExit = "FB_Exit";
 inline constexpr std::string_view kFbReinit = "FB_Reinit";
 using base::DiagnosticCode;
 
-class Objects {
+class Objects : public Phase {
  public:
-  explicit Objects(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   // --- declarations (objects.cc, inheritance.cc, overriding.cc)
   void collect(uint32_t block);
@@ -86,13 +85,9 @@ class Objects {
   const Spec* construction(SpecId spec) const;
   // Are there instances in it that start code visits?
   bool constructs(ir::TypeId type);
-  // What the program __START begins with: globals, then programs.
-  const std::vector<VarId>& start_globals() const { return start_globals_; }
   VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
   // Returns the method's number in Sema::pous.
   uint32_t add_made_method(uint32_t block, std::string_view name, MadeCode code);
-  // A global, not 0 where a change is what start code runs for.
-  VarId change_flag() const { return change_flag_; }
   // What the stamp of an instance becomes: another number for another layout.
   uint32_t stamp_of(const PouInfo& block) const;
 
@@ -126,11 +121,6 @@ class Objects {
   VarId program_global(const std::string& name, const PouInfo& program);
   void add_start_program();
   void add_stamp(PouInfo& block);
-
-  Sema& sema_;
-  std::unordered_map<ir::TypeId, bool> constructs_;
-  std::vector<VarId> start_globals_;
-  VarId change_flag_;
 };
 
 }  // namespace frontend

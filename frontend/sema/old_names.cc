@@ -54,10 +54,10 @@ ir::OldNameId OldNames::of(const Variable& variable) {
   for (const Attribute* part : part_rules(sema_.tree, variable.decl->attributes)) {
     if (!part->has_value || !variable.type.valid()) continue;
     if (!has_part(variable.type, part->part)) {
-      sema_.error(DiagnosticCode::kBadRename, part->name.span,
-                  "`" + std::string(variable.name.text) + std::string(part->part) +
-                      "` is no part of this variable that has a value of its own",
-                  "name a member or element that is in no union and no function block");
+      error(DiagnosticCode::kBadRename, part->name.span,
+            "`" + std::string(variable.name.text) + std::string(part->part) +
+                "` is no part of this variable that has a value of its own",
+            "name a member or element that is in no union and no function block");
       continue;
     }
     std::vector<std::string> names;
@@ -106,7 +106,7 @@ void OldNames::rename_types() {
   for (const TypeDecl& decl : sema_.tree.types) {
     const std::string rule = renamed_from(sema_.tree, decl.attributes);
     if (rule.empty() || !decl.spec.valid() || sema_.library.holds(decl.name.span)) continue;
-    const SpecInfo& info = sema_.facts.of(sema_.scope_, decl.spec);
+    const SpecInfo& info = sema_.facts.of(scope_, decl.spec);
     if (!info.use.type.valid()) continue;
     ir::Type& type = sema_.program.types.edit(info.use.type);
     const bool own = ir::same_name(type.name, info.name.text) &&
@@ -115,10 +115,10 @@ void OldNames::rename_types() {
       type.old_name = add(whole_old_names(info.name.text, rule));
       continue;
     }
-    sema_.error(DiagnosticCode::kBadRename, decl.name.span,
-                "`" + std::string(decl.name.text) +
-                    "` is another name for a type; its variables keep their values by themselves",
-                "take the rule away");
+    error(DiagnosticCode::kBadRename, decl.name.span,
+          "`" + std::string(decl.name.text) +
+              "` is another name for a type; its variables keep their values by themselves",
+          "take the rule away");
   }
 }
 

@@ -4,15 +4,13 @@
 
 #include <string>
 
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 
-class Sema;
-
-class OldNames {
+class OldNames : public Phase {
  public:
-  explicit OldNames(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   ir::OldNameId add(std::string name);  // invalid for ""
   ir::OldNameId of_rule(Range32 attributes);
@@ -28,8 +26,6 @@ class OldNames {
   std::string old_list(const PouInfo& info) const;
   std::string old_member(const Variable& variable) const;
   bool has_part(ir::TypeId type, std::string_view part) const;
-
-  Sema& sema_;
 };
 
 }  // namespace frontend

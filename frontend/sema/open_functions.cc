@@ -181,7 +181,6 @@ bool OpenFunctions::bind_array(const Match& match, const Spec& spec, NameMap<Not
     generic.try_emplace(element.name.text, note);
     return true;
   }
-  const Sema::Within outside(sema_, kNoPou);
   ir::TypeId wanted = Types(sema_).resolve_type(spec.element).type;
   if (!wanted.valid() || wanted == array.base) return wanted.valid();
   error(DiagnosticCode::kBadGenericArgument, span,
@@ -248,7 +247,7 @@ uint32_t OpenFunctions::instance_of(uint32_t pou, const ParameterTypes& types,
   for (size_t i = 0; i < types.size() && i < info.variables.size(); ++i) {
     sema_.declared.variables[info.variables[i].index].bound = types[i];
   }
-  if (sema_.declared.complete) sema_.ask<Interfaces>().resolve_interface(number);
+  if (sema_.declared.complete) ask<Interfaces>().resolve_interface(number);
   return number;
 }
 

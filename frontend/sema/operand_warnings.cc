@@ -26,25 +26,25 @@ std::string text_of(const Sema& sema, ExprId id) {
 
 // Texts of the parts of `id` that can trap and are evaluated whenever it is. False where not all
 // of them are found.
-bool find_traps(Sema& sema, ExprId id, std::vector<std::string>& out) {
+bool find_traps(const Phase& phase, ExprId id, std::vector<std::string>& out) {
   for (;;) {
-    const Expr& expr = sema.tree[id];
-    const Note& note = sema.infer(id);
+    const Expr& expr = phase.sema().tree[id];
+    const Note& note = phase.infer(id);
     if (!note.can_trap) return true;
     if (note.calls || out.size() == kMostTraps) return false;
     switch (expr.kind) {
       case ExprKind::kDeref:
       case ExprKind::kMember:
       case ExprKind::kIndex:
-        out.push_back(text_of(sema, id));
+        out.push_back(text_of(phase.sema(), id));
         return !out.back().empty();
       case ExprKind::kUnary:
         break;
       case ExprKind::kBinary: {
         const bool lazy = expr.binary == BinaryOp::kAndThen || expr.binary == BinaryOp::kOrElse;
         const bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
-        if (divides || (!lazy && !find_traps(sema, expr.right, out))) return false;
-        if (lazy && sema.infer(expr.right).can_trap) return false;
+        if (divides || (!lazy && !find_traps(phase, expr.right, out))) return false;
+        if (lazy && phase.infer(expr.right).can_trap) return false;
         break;
       }
       default:
@@ -56,69 +56,70 @@ bool find_traps(Sema& sema, ExprId id, std::vector<std::string>& out) {
 
 }  // namespace
 
-void check_right_operand(Sema& sema, const Expr& expr) {
+void check_right_operand(const Phase& phase, const Expr& expr) {
   std::vector<std::string> traps;
   std::vector<std::string> before;
-  const bool all_known = find_traps(sema, expr.right, traps);
-  find_traps(sema, expr.operand, before);
+  const bool all_known = find_traps(phase, expr.right, traps);
+  find_traps(phase, expr.operand, before);
   const bool done = std::all_of(traps.begin(), traps.end(), [&](const std::string& trap) {
     return std::find(before.begin(), before.end(), trap) != before.end();
   });
   if (all_known && done) return;
   const bool drawn = expr.op == expr.span.begin;  // between contacts in a row
   const bool conjunction = expr.binary == BinaryOp::kAnd;
-  sema.warning(DiagnosticCode::kRightOperandTraps, sema.tree[expr.right].span,
-               drawn ? std::string("this contact is evaluated without power, too, and can trap")
-                     : "the right operand of " + std::string(operator_text(expr.binary)) +
-                           " is evaluated in any case and can trap",
-               drawn              ? "compute it in a box with EN, or jump over the rung"
-               : expr.instruction ? "jump over it with JMPCN"
-               : conjunction      ? "use AND_THEN"
-                                  : "use OR_ELSE");
+  phase.warning(DiagnosticCode::kRightOperandTraps, phase.sema().tree[expr.right].span,
+                drawn ? std::string("this contact is evaluated without power, too, and can trap")
+                      : "the right operand of " + std::string(operator_text(expr.binary)) +
+                            " is evaluated in any case and can trap",
+                drawn              ? "compute it in a box with EN, or jump over the rung"
+                : expr.instruction ? "jump over it with JMPCN"
+                : conjunction      ? "use AND_THEN"
+                                   : "use OR_ELSE");
 }
 
-void check_divisor(Sema& sema, ExprId divisor, bool whole) {
-  const auto value = sema.ask<Constants>().fold(divisor, {});
+void check_divisor(const Phase& phase, ExprId divisor, bool whole) {
+  const auto value = phase.ask<Constants>().fold(divisor, {});
   if (!value || value->integer != 0 || value->real != 0) return;
   // A constant that has a name may be another one some day, and be asked before.
-  if (whole && sema.tree[divisor].kind == ExprKind::kLiteral) {
-    sema.error(DiagnosticCode::kConstantDivision, sema.tree[divisor].span, "the divisor is 0",
-               "divide by something else; this would trap in every scan");
+  if (whole && phase.sema().tree[divisor].kind == ExprKind::kLiteral) {
+    phase.error(DiagnosticCode::kConstantDivision, phase.sema().tree[divisor].span,
+                "the divisor is 0", "divide by something else; this would trap in every scan");
     return;
   }
-  sema.warning(DiagnosticCode::kZeroDivisor, sema.tree[divisor].span, "the divisor is always 0",
-               "divide only where it is not 0: IF n <> 0 THEN ...");
+  phase.warning(DiagnosticCode::kZeroDivisor, phase.sema().tree[divisor].span,
+                "the divisor is always 0", "divide only where it is not 0: IF n <> 0 THEN ...");
 }
 
 // Zero is exact, and comparing with it is how divisors are tested.
-void check_real_equality(Sema& sema, const Expr& expr) {
+void check_real_equality(const Phase& phase, const Expr& expr) {
   if (expr.binary != BinaryOp::kEq && expr.binary != BinaryOp::kNe) return;
   bool real = false;
   bool constant = true;
   for (ExprId side : {expr.operand, expr.right}) {
-    const Note& note = sema.infer(side);
+    const Note& note = phase.infer(side);
     constant = constant && note.constant;
     const bool fixed = note.flex == Flex::kNone;
-    real = real || (traits_of(sema.program.types, note.type).real && fixed);
+    real = real || (traits_of(phase.sema().program.types, note.type).real && fixed);
     if (!note.constant || !note.type.valid()) continue;
-    const Expr& literal = sema.tree[side];
+    const Expr& literal = phase.sema().tree[side];
     if (literal.kind != ExprKind::kLiteral) continue;
-    const Literal& value = sema.tree.literals[literal.number];
+    const Literal& value = phase.sema().tree.literals[literal.number];
     if (value.integer == 0 && value.real == 0) return;
   }
   if (!real || constant) return;
-  sema.warning(DiagnosticCode::kRealEquality, expr.span,
-               "reals are compared with " + std::string(operator_text(expr.binary)),
-               "compare the distance: ABS(a - b) < limit");
+  phase.warning(DiagnosticCode::kRealEquality, expr.span,
+                "reals are compared with " + std::string(operator_text(expr.binary)),
+                "compare the distance: ABS(a - b) < limit");
 }
 
-void check_wrapped(Sema& sema, ExprId operand, std::string_view used) {
-  const Note& note = sema.infer(operand);
+void check_wrapped(const Phase& phase, ExprId operand, std::string_view used) {
+  const Note& note = phase.infer(operand);
   if (note.width != Width::kWraps || note.constant) return;
-  sema.warning(DiagnosticCode::kCutBeforeUse, sema.tree[operand].span,
-               "the result is cut to `" + sema.report.type_text(note.type) + "` before it is " +
-                   std::string(used),
-               "convert an operand, so that the operator has the width that is needed: TO_DINT(a)");
+  phase.warning(
+      DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
+      "the result is cut to `" + phase.sema().report.type_text(note.type) + "` before it is " +
+          std::string(used),
+      "convert an operand, so that the operator has the width that is needed: TO_DINT(a)");
 }
 
 }  // namespace frontend

@@ -6,11 +6,11 @@
 namespace frontend {
 
 // AND or OR whose right operand can trap, and does not only what the left one has done before.
-void check_right_operand(Sema& sema, const Expr& expr);
+void check_right_operand(const Phase& phase, const Expr& expr);
 // The divisor is constant. `whole`: 0 traps. A literal is an error then (E3012).
-void check_divisor(Sema& sema, ExprId divisor, bool whole);
-void check_real_equality(Sema& sema, const Expr& expr);
+void check_divisor(const Phase& phase, ExprId divisor, bool whole);
+void check_real_equality(const Phase& phase, const Expr& expr);
 // Dialect iec: an operand that was cut to its type before it is `used`: "compared", "widened".
-void check_wrapped(Sema& sema, ExprId operand, std::string_view used);
+void check_wrapped(const Phase& phase, ExprId operand, std::string_view used);
 
 }  // namespace frontend

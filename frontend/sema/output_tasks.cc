@@ -29,11 +29,11 @@ void CommonUses::check_instance_outputs(const ir::ProgramInstance& instance,
       for (uint32_t byte = write.address.bit_offset / 8; byte <= last; ++byte) {
         uint32_t first_task = owner.emplace(byte, instance.task).first->second;
         if (first_task == instance.task) continue;
-        sema_.error(DiagnosticCode::kOutputTwoTasks, write.span,
-                    "output byte %QB" + std::to_string(byte) + " is written by task `" +
-                        program.tasks[first_task].name + "` and by task `" +
-                        program.tasks[instance.task].name + "`",
-                    "let one task write it; the other sets a global variable that the first reads");
+        error(DiagnosticCode::kOutputTwoTasks, write.span,
+              "output byte %QB" + std::to_string(byte) + " is written by task `" +
+                  program.tasks[first_task].name + "` and by task `" +
+                  program.tasks[instance.task].name + "`",
+              "let one task write it; the other sets a global variable that the first reads");
         return;
       }
     }

@@ -49,10 +49,10 @@ void Objects::check_names(const PouInfo& info) {
     if (!find_variable(info.base, name).valid() && find_code(info.base, name).owner == kNoPou) {
       continue;
     }
-    sema_.error(DiagnosticCode::kDuplicateName, variable.name.span,
-                quoted(variable.name) + " is declared in the base " +
-                    quoted(sema_.declared.pous[info.base].decl->name) + " already",
-                "give it another name; the base's is there too");
+    error(DiagnosticCode::kDuplicateName, variable.name.span,
+          quoted(variable.name) + " is declared in the base " +
+              quoted(sema_.declared.pous[info.base].decl->name) + " already",
+          "give it another name; the base's is there too");
   }
 }
 
@@ -65,25 +65,24 @@ void Objects::check_member(const PouInfo& info, const PouDecl& decl) {
   const PouInfo& method = sema_.declared.pous[known->second.*slot];
   if (method.decl != &decl) return;  // a second one of that name
   if (find_variable(info.base, decl.name.text).valid()) {
-    sema_.error(DiagnosticCode::kDuplicateName, decl.name.span,
-                quoted(decl.name) + " is a variable of the base", "give it another name");
+    error(DiagnosticCode::kDuplicateName, decl.name.span,
+          quoted(decl.name) + " is a variable of the base", "give it another name");
     return;
   }
   const bool concrete = !info.decl->is_abstract && info.decl->kind != PouKind::kInterface;
   if (decl.is_abstract && concrete) {
-    sema_.error(DiagnosticCode::kNotImplemented, decl.name.span,
-                quoted(decl.name) + " is ABSTRACT, but " + quoted(info.decl->name) + " is not",
-                "declare the block ABSTRACT, or give the method a body");
+    error(DiagnosticCode::kNotImplemented, decl.name.span,
+          quoted(decl.name) + " is ABSTRACT, but " + quoted(info.decl->name) + " is not",
+          "declare the block ABSTRACT, or give the method a body");
   }
   // Each block has its own; nothing calls it virtually.
   if (ir::same_name(decl.name.text, kFbInit)) return;
   const Found inherited = find_code(info.base, decl.name.text);
   if (inherited.owner != kNoPou) return check_override(method, inherited, slot);
   if (!decl.is_override) return;
-  sema_.error(
-      DiagnosticCode::kBadOverride, decl.name.span,
-      quoted(decl.name) + " overrides nothing: no base of " + quoted(info.decl->name) + " has it",
-      info.base == kNoPou ? std::string() : suggestion(info.base, decl.name.text));
+  error(DiagnosticCode::kBadOverride, decl.name.span,
+        quoted(decl.name) + " overrides nothing: no base of " + quoted(info.decl->name) + " has it",
+        info.base == kNoPou ? std::string() : suggestion(info.base, decl.name.text));
 }
 
 void Objects::check_override(const PouInfo& method, const Found& inherited,
@@ -92,8 +91,8 @@ void Objects::check_override(const PouInfo& method, const Found& inherited,
   const Name& name = method.decl->name;
   const bool accessor = slot != &MemberCode::method;
   if (accessor != inherited.code.is_property()) {
-    sema_.error(DiagnosticCode::kBadOverride, name.span,
-                full_name(owner, name) + (accessor ? " is no property" : " is a property"));
+    error(DiagnosticCode::kBadOverride, name.span,
+          full_name(owner, name) + (accessor ? " is no property" : " is a property"));
     return;
   }
   // A property may get its other accessor here.
@@ -102,7 +101,7 @@ void Objects::check_override(const PouInfo& method, const Found& inherited,
   const PouInfo& replaced = sema_.declared.pous[base];
   const bool hidden = replaced.decl->access == Access::kPrivate;
   if (replaced.decl->is_final || hidden) {
-    sema_.error(
+    error(
         DiagnosticCode::kBadOverride, name.span,
         full_name(owner, name) + (hidden ? " is PRIVATE" : " is FINAL") + " and cannot be replaced",
         "give the method another name");
@@ -130,12 +129,12 @@ bool Objects::check_signature(const PouInfo& method, const PouInfo& wanted, Diag
   const std::vector<VarId> theirs = parameters(wanted);
   const std::string whose = full_name(sema_.declared.pous[wanted.owner], wanted.decl->name);
   auto fail = [&](base::SourceSpan span, const std::string& text) {
-    sema_.error(code, span, text, "declare the same parameters and result as " + whose);
+    error(code, span, text, "declare the same parameters and result as " + whose);
     return false;
   };
   for (size_t i = 0; i < own.size() && i < theirs.size(); ++i) {
-    const Variable& a = sema_.resolve(own[i]);
-    const Variable& b = sema_.resolve(theirs[i]);
+    const Variable& a = resolve(own[i]);
+    const Variable& b = resolve(theirs[i]);
     if (!a.type.valid() || !b.type.valid()) return false;
     const bool results = own[i] == method.result && theirs[i] == wanted.result;
     const bool same = a.section == b.section &&
@@ -152,7 +151,7 @@ bool Objects::check_signature(const PouInfo& method, const PouInfo& wanted, Diag
   }
   if (own.size() == theirs.size()) return true;
   const bool more = own.size() > theirs.size();
-  const Variable& odd = sema_.resolve(more ? own[theirs.size()] : theirs[own.size()]);
+  const Variable& odd = resolve(more ? own[theirs.size()] : theirs[own.size()]);
   const bool result = odd.decl == nullptr;
   return fail(method.decl->name.span,
               (result ? "the result" : "the parameter " + quoted(odd.name)) +
@@ -173,9 +172,9 @@ void Objects::check_abstract(const PouInfo& info) {
     }
   }
   if (missing.empty()) return;
-  sema_.error(DiagnosticCode::kNotImplemented, info.decl->name.span,
-              quoted(info.decl->name) + " gives no body to " + missing,
-              "add it, or declare the block ABSTRACT");
+  error(DiagnosticCode::kNotImplemented, info.decl->name.span,
+        quoted(info.decl->name) + " gives no body to " + missing,
+        "add it, or declare the block ABSTRACT");
 }
 
 void Objects::check_implements(const PouInfo& info, const PouInfo& interface) {
@@ -200,10 +199,10 @@ void Objects::check_implements(const PouInfo& info, const PouInfo& interface) {
     }
   }
   if (missing.empty()) return;
-  sema_.error(DiagnosticCode::kNotImplemented, info.decl->name.span,
-              quoted(info.decl->name) + " implements " + quoted(interface.decl->name) +
-                  " without " + missing,
-              "add it, or declare the block ABSTRACT");
+  error(DiagnosticCode::kNotImplemented, info.decl->name.span,
+        quoted(info.decl->name) + " implements " + quoted(interface.decl->name) + " without " +
+            missing,
+        "add it, or declare the block ABSTRACT");
 }
 
 // Does the base implement it already?
@@ -216,9 +215,9 @@ void Objects::check_instance(ir::TypeId type, base::SourceSpan span) {
   while (sema_.program.types[type].kind == ir::Kind::kArray) type = sema_.program.types[type].base;
   const PouInfo* block = sema_.declared.pou_of(type);
   if (block == nullptr || !block->decl->is_abstract) return;
-  sema_.error(DiagnosticCode::kAbstractInstance, span,
-              "`" + sema_.report.type_text(type) + "` is ABSTRACT and has no instances",
-              "declare a block that extends it, or a reference");
+  error(DiagnosticCode::kAbstractInstance, span,
+        "`" + sema_.report.type_text(type) + "` is ABSTRACT and has no instances",
+        "declare a block that extends it, or a reference");
 }
 
 }  // namespace frontend

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "frontend/sema/callee.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -39,19 +40,38 @@ class Phase {
     sema_.report.allow_extension(scope_, what, span, std::move(fix));
   }
 
- protected:
+  // Is it code of a test, which may use what is private?
+  bool in_test() const { return scope_.pou != nullptr && scope_.pou->test; }
+
   // Another phase, for the same scope.
   template <class Other>
   Other ask() const {
     return Other(sema_, scope_);
   }
+  Sema& sema() const { return sema_; }
 
+ protected:
   Sema& sema_;
   PouScope scope_;
 
  private:
   const Note& infer_anew(ExprId expr, Note& known) const;
   const Variable& resolve_anew(VarId id) const;
+};
+
+// For who looks from another scope for a while.
+class ScopeChange {
+ public:
+  ScopeChange(PouScope& scope, const PouScope& other) : scope_(scope), before_(scope) {
+    scope = other;
+  }
+  ~ScopeChange() { scope_ = before_; }
+  ScopeChange(const ScopeChange&) = delete;
+  ScopeChange& operator=(const ScopeChange&) = delete;
+
+ private:
+  PouScope& scope_;
+  PouScope before_;
 };
 
 }  // namespace frontend

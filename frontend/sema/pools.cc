@@ -1,6 +1,7 @@
 #include "frontend/sema/pools.h"
 #include "frontend/sema/collection.h"
 #include "frontend/sema/interfaces.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/types.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr uint32_t kMostElements = 65'535;
 }  // namespace
 
 void Pools::declare() {
-  declared_ = true;
+  sema_.pools.declared = true;
   const size_t count = sema_.declared.pous.size();
   for (size_t i = 0; i < count; ++i) {
     const PouInfo& info = sema_.declared.pous[i];
@@ -26,10 +27,9 @@ void Pools::declare() {
     const bool block = info.self.valid() && info.id.valid() &&
                        sema_.program.types[info.self].kind == ir::Kind::kFunctionBlock;
     if (!block || info.decl->is_abstract) {
-      sema_.error(
-          DiagnosticCode::kBadPool, attribute->name.span,
-          "`" + std::string(info.decl->name.text) + "` cannot have instances in a pool",
-          "put the attribute in front of a FUNCTION_BLOCK that is not ABSTRACT, or of a TYPE");
+      error(DiagnosticCode::kBadPool, attribute->name.span,
+            "`" + std::string(info.decl->name.text) + "` cannot have instances in a pool",
+            "put the attribute in front of a FUNCTION_BLOCK that is not ABSTRACT, or of a TYPE");
       continue;
     }
     const Name name{sema_.declared.keep_name(sema_.program.types[info.self].name),
@@ -47,7 +47,7 @@ uint32_t Pools::count_of(const Attribute& attribute) {
   const char* end = attribute.value.data() + attribute.value.size();
   auto [at, problem] = std::from_chars(attribute.value.data(), end, count);
   if (problem == std::errc() && at == end && count >= 1 && count <= kMostElements) return count;
-  sema_.error(
+  error(
       DiagnosticCode::kBadPool, attribute.name.span,
       "`" + std::string(attribute.value) + "` is no size of a pool",
       "write a number from 1 to " + std::to_string(kMostElements) + ": {attribute 'pool' := '16'}");
@@ -55,15 +55,14 @@ uint32_t Pools::count_of(const Attribute& attribute) {
 }
 
 void Pools::add_type(const TypeDecl& decl, const Attribute& attribute) {
-  Sema::Within scope(sema_, kNoPou);
-  const ir::TypeId type = sema_.ask<Types>().resolve_type(decl.spec).type;
+  const ir::TypeId type = ask<Types>().resolve_type(decl.spec).type;
   if (!type.valid()) return;
   const ir::Kind kind = sema_.program.types[type].kind;
   const bool storable = kind != ir::Kind::kReferenceTo && kind != ir::Kind::kInterface;
   if (!storable || sema_.program.types.is_instance(type)) {
-    sema_.error(DiagnosticCode::kBadPool, attribute.name.span,
-                "`" + std::string(decl.name.text) + "` cannot have values in a pool",
-                "put the attribute in front of the FUNCTION_BLOCK itself, or of a TYPE of data");
+    error(DiagnosticCode::kBadPool, attribute.name.span,
+          "`" + std::string(decl.name.text) + "` cannot have values in a pool",
+          "put the attribute in front of the FUNCTION_BLOCK itself, or of a TYPE of data");
     return;
   }
   const std::string_view name = sema_.namespaces.qualified(decl.scope, decl.name.text);
@@ -86,14 +85,14 @@ uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
   value.spec = decl.spec;
   value.span = decl.name.span;
   block.vars.push_back(std::move(value));
-  const uint32_t number = sema_.ask<Collection>().add_pou(made, false, made.name.text);
-  sema_.objects.inherit();
-  sema_.ask<Interfaces>().resolve_interface(number);
+  const uint32_t number = ask<Collection>().add_pou(made, false, made.name.text);
+  ask<Objects>().inherit();
+  ask<Interfaces>().resolve_interface(number);
   return number;
 }
 
 void Pools::add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, uint32_t count) {
-  Pool& pool = pools_.emplace_back();
+  Pool& pool = sema_.pools.all.emplace_back();
   pool.name = name.text;
   pool.type = type;
   pool.block = block;
@@ -102,8 +101,8 @@ void Pools::add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, u
   ir::TypeTable& types = sema_.program.types;
   const std::string text(name.text);
   auto global = [&](const char* suffix, ir::TypeId element) {
-    return sema_.objects.add_hidden_global(sema_.declared.keep_name(text + suffix),
-                                           types.array(element, {{1, count}}), name.span);
+    return ask<Objects>().add_hidden_global(sema_.declared.keep_name(text + suffix),
+                                            types.array(element, {{1, count}}), name.span);
   };
   pool.elements = global("#pool", sema_.declared.pous[block].self);
   pool.states = global("#states", types.elementary(ir::Kind::kByte));
@@ -128,10 +127,10 @@ void Pools::add_methods(ir::TypeId type) {
   if (block == nullptr || !block->id.valid()) return;
   const uint32_t number = block->number;
   sema_.declared.pous[number].reset =
-      sema_.objects.add_made_method(number, "__RESET", MadeCode::kReset);
+      ask<Objects>().add_made_method(number, "__RESET", MadeCode::kReset);
   if (!inner_leave) return;
   sema_.declared.pous[number].leave =
-      sema_.objects.add_made_method(number, "__LEAVE", MadeCode::kLeave);
+      ask<Objects>().add_made_method(number, "__LEAVE", MadeCode::kLeave);
 }
 
 bool Pools::leaves(ir::TypeId type) {
@@ -140,7 +139,7 @@ bool Pools::leaves(ir::TypeId type) {
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return false;
   const PouInfo* block = sema_.declared.pou_of(type);
-  if (block != nullptr && sema_.objects.find_code(block->number, kFbExit).code.method != kNoPou) {
+  if (block != nullptr && ask<Objects>().find_code(block->number, kFbExit).code.method != kNoPou) {
     return true;
   }
   const std::vector<ir::Member>& members = types[type].members;
@@ -161,33 +160,33 @@ bool Pools::holds_instance(ir::TypeId type) const {
 }
 
 const Pool* Pools::of_new(ExprId id) {
-  if (!declared_) {
-    sema_.error(DiagnosticCode::kBadPool, sema_.tree[id].span,
-                "no initial value is taken from a pool", "call __NEW in FB_Init, or in code");
+  if (!sema_.pools.declared) {
+    error(DiagnosticCode::kBadPool, sema_.tree[id].span, "no initial value is taken from a pool",
+          "call __NEW in FB_Init, or in code");
     return nullptr;
   }
   const Expr* expr = &sema_.tree[id];
   if (expr->kind == ExprKind::kCall) expr = &sema_.tree[expr->operand];
   const bool named = expr->kind == ExprKind::kName || expr->kind == ExprKind::kMember;
   const std::string_view name =
-      named ? sema_.namespaces.find(NameSort::kDeclaration, *expr) : std::string_view();
-  for (const Pool& pool : pools_) {
+      named ? sema_.namespaces.find(NameSort::kDeclaration, scope_, *expr) : std::string_view();
+  for (const Pool& pool : sema_.pools.all) {
     if (!name.empty() && ir::same_name(pool.name, name)) return &pool;
   }
   const PouInfo* block = name.empty() ? nullptr : sema_.declared.find_pou(name);
   const bool type = expr->kind == ExprKind::kType || block != nullptr ||
-                    (!name.empty() && sema_.ask<Types>().find_type(name));
+                    (!name.empty() && ask<Types>().find_type(name));
   const std::string shown = name.empty() ? "this" : "`" + std::string(name) + "`";
   if (!type) {
-    sema_.error(DiagnosticCode::kBadPool, expr->span, shown + " is no type with a pool",
-                "write __NEW(Type), or __NEW(Block(arguments))");
+    error(DiagnosticCode::kBadPool, expr->span, shown + " is no type with a pool",
+          "write __NEW(Type), or __NEW(Block(arguments))");
   } else if (expr->kind == ExprKind::kType) {
-    sema_.error(DiagnosticCode::kBadPool, expr->span, "only types with a name have a pool",
-                "declare one: {attribute 'pool' := '16'} TYPE Cell : INT; END_TYPE");
+    error(DiagnosticCode::kBadPool, expr->span, "only types with a name have a pool",
+          "declare one: {attribute 'pool' := '16'} TYPE Cell : INT; END_TYPE");
   } else {
-    sema_.error(DiagnosticCode::kBadPool, expr->span, shown + " has no pool",
-                "say how many there can be at once: {attribute 'pool' := '16'} in front of its "
-                "declaration");
+    error(DiagnosticCode::kBadPool, expr->span, shown + " has no pool",
+          "say how many there can be at once: {attribute 'pool' := '16'} in front of its "
+          "declaration");
   }
   return nullptr;
 }
@@ -204,17 +203,17 @@ Note Pools::infer_new(ExprId type) {
 
 // __DELETE is called for what it does; its value is FALSE.
 Note Pools::infer_delete(ExprId pointer) {
-  const Note& given = sema_.infer(pointer);
+  const Note& given = infer(pointer);
   const ir::TypeTable& types = sema_.program.types;
   const bool reference =
       !given.reference.valid() && types.is_reference(given.type) && given.flex != Flex::kNull;
   if (!reference || of_target(types[given.type].base).empty()) {
-    sema_.error(DiagnosticCode::kBadPool, sema_.tree[pointer].span,
-                reference ? "nothing that `" + sema_.report.type_text(given.type) +
-                                "` leads to comes from a pool"
-                          : "__DELETE takes a variable that __NEW has given a value",
-                reference ? "put {attribute 'pool' := '16'} in front of the type's declaration"
-                          : "declare it as POINTER TO the type");
+    error(DiagnosticCode::kBadPool, sema_.tree[pointer].span,
+          reference ? "nothing that `" + sema_.report.type_text(given.type) +
+                          "` leads to comes from a pool"
+                    : "__DELETE takes a variable that __NEW has given a value",
+          reference ? "put {attribute 'pool' := '16'} in front of the type's declaration"
+                    : "declare it as POINTER TO the type");
     return {};
   }
   Note note;
@@ -226,7 +225,7 @@ Note Pools::infer_delete(ExprId pointer) {
 
 std::vector<const Pool*> Pools::of_target(ir::TypeId target) const {
   std::vector<const Pool*> found;
-  for (const Pool& pool : pools_) {
+  for (const Pool& pool : sema_.pools.all) {
     if (pool.type == target || sema_.program.types.is_a(pool.type, target)) found.push_back(&pool);
   }
   return found;

@@ -7,34 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
-
-class Sema;
-
-struct Pool {
-  std::string_view name;    // of the type, qualified
-  ir::TypeId type;          // what a pointer to an element points to
-  uint32_t block = kNoPou;  // of the instances
-  bool boxed = false;
-  uint32_t count = 0;
-  VarId elements;  // ARRAY[1..count] OF the block
-  VarId states;    // ARRAY[1..count] OF BYTE: kPoolFree and so on
-};
 
 inline constexpr uint64_t kPoolFree = 0;
 inline constexpr uint64_t kPoolUsed = 1;
 inline constexpr uint64_t kPoolLeaving = 2;  // inside of __DELETE
 
-class Pools {
+class Pools : public Phase {
  public:
-  explicit Pools(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   // After all declarations: adds the variables, and the methods __RESET and __LEAVE to the blocks
   // that they need.
   void declare();
-  const std::vector<Pool>& all() const { return pools_; }
   // __NEW(type), __DELETE(pointer)
   Note infer_new(ExprId type);
   Note infer_delete(ExprId pointer);
@@ -54,10 +41,6 @@ class Pools {
   void add_type(const TypeDecl& decl, const Attribute& attribute);
   uint32_t add_box(const TypeDecl& decl, std::string_view name);
   void add_methods(ir::TypeId type);
-
-  Sema& sema_;
-  std::vector<Pool> pools_;
-  bool declared_ = false;
 };
 
 }  // namespace frontend

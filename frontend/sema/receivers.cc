@@ -19,7 +19,7 @@ bool Objects::is_super(const Expr& expr) const {
 uint32_t Objects::receiver(ExprId operand) {
   const Expr& expr = sema_.tree[operand];
   if (is_super(expr)) return super(expr.span);
-  const Note& note = sema_.infer(operand);
+  const Note& note = infer(operand);
   if (!note.type.valid()) return kNoPou;
   const bool leads = expr.kind == ExprKind::kThis || is_interface(sema_.program.types, note.type);
   const ir::TypeId type = leads ? sema_.program.types[note.type].base : note.type;
@@ -29,29 +29,29 @@ uint32_t Objects::receiver(ExprId operand) {
 
 // The base of the own block; reports.
 uint32_t Objects::super(base::SourceSpan span) {
-  const uint32_t own = sema_.declared.block_of(sema_.scope_);
+  const uint32_t own = sema_.declared.block_of(scope_);
   const uint32_t base = own == kNoPou ? kNoPou : sema_.declared.pous[own].base;
   if (base == kNoPou && (own == kNoPou || sema_.declared.pous[own].decl->extends.empty())) {
-    sema_.error(DiagnosticCode::kBadThis, span,
-                own == kNoPou ? std::string("SUPER stands outside of a function block")
-                              : quoted(sema_.declared.pous[own].decl->name) + " has no base",
-                "SUPER is for blocks that are declared with EXTENDS");
+    error(DiagnosticCode::kBadThis, span,
+          own == kNoPou ? std::string("SUPER stands outside of a function block")
+                        : quoted(sema_.declared.pous[own].decl->name) + " has no base",
+          "SUPER is for blocks that are declared with EXTENDS");
   }
   return base;
 }
 
 Note Objects::infer_this(const Expr& expr) {
-  const uint32_t own = sema_.declared.block_of(sema_.scope_);
+  const uint32_t own = sema_.declared.block_of(scope_);
   Note note;
   if (expr.kind == ExprKind::kSuper) {
     if (super(expr.span) == kNoPou) return {};
-    sema_.error(DiagnosticCode::kBadThis, expr.span, "SUPER is no value",
-                "write SUPER^.member or SUPER^(); THIS refers to the instance");
+    error(DiagnosticCode::kBadThis, expr.span, "SUPER is no value",
+          "write SUPER^.member or SUPER^(); THIS refers to the instance");
     return {};
   }
   if (own == kNoPou) {
-    sema_.error(DiagnosticCode::kBadThis, expr.span, "THIS stands outside of a function block",
-                "only code of function blocks, classes and programs has an instance");
+    error(DiagnosticCode::kBadThis, expr.span, "THIS stands outside of a function block",
+          "only code of function blocks, classes and programs has an instance");
     return {};
   }
   note.type = sema_.program.types.pointer(sema_.declared.pous[own].self);
@@ -59,8 +59,8 @@ Note Objects::infer_this(const Expr& expr) {
 }
 
 bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
-  const uint32_t own = sema_.declared.block_of(sema_.scope_);
-  if (sema_.in_test() && access != Access::kInternal) return true;
+  const uint32_t own = sema_.declared.block_of(scope_);
+  if (in_test() && access != Access::kInternal) return true;
   const char* word = nullptr;
   if (access == Access::kPrivate && own != owner) word = "PRIVATE";
   if (access == Access::kProtected && !(own != kNoPou && extends(own, owner))) word = "PROTECTED";
@@ -69,11 +69,11 @@ bool Objects::check_access(Access access, uint32_t owner, const Name& name) {
     word = "INTERNAL";
   }
   if (word == nullptr) return true;
-  sema_.error(DiagnosticCode::kNotAccessible, name.span,
-              quoted(name) + " is " + word + " in " + quoted(sema_.declared.pous[owner].decl->name),
-              access == Access::kPrivate     ? "only that block itself uses it"
-              : access == Access::kProtected ? "only blocks that extend that one use it"
-                                             : "only code of the same namespace uses it");
+  error(DiagnosticCode::kNotAccessible, name.span,
+        quoted(name) + " is " + word + " in " + quoted(sema_.declared.pous[owner].decl->name),
+        access == Access::kPrivate     ? "only that block itself uses it"
+        : access == Access::kProtected ? "only blocks that extend that one use it"
+                                       : "only code of the same namespace uses it");
   return false;
 }
 

@@ -26,9 +26,9 @@ uint32_t Objects::recursion_depth(const PouDecl& decl) {
   if (problem == std::errc() && at == end && depth >= 1 && depth <= base::kMaxCallDepth) {
     return depth;
   }
-  sema_.error(DiagnosticCode::kRecursiveCall, attribute->name.span,
-              "`" + std::string(attribute->value) + "` is no depth of calls",
-              "write a number from 1 to " + std::to_string(base::kMaxCallDepth));
+  error(DiagnosticCode::kRecursiveCall, attribute->name.span,
+        "`" + std::string(attribute->value) + "` is no depth of calls",
+        "write a number from 1 to " + std::to_string(base::kMaxCallDepth));
   return 1;
 }
 
@@ -38,10 +38,9 @@ void Objects::report_circle(const std::vector<uint32_t>& path) {
   };
   std::string through;
   for (size_t i = 1; i < path.size(); ++i) through += (i == 1 ? "" : ", ") + name(path[i]);
-  Sema::Within scope(sema_, kNoPou);
-  sema_.error(DiagnosticCode::kRecursiveCall, sema_.declared.pous[path[0]].decl->name.span,
-              name(path[0]) + " calls itself" + (through.empty() ? "" : " through " + through),
-              "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
+  error(DiagnosticCode::kRecursiveCall, sema_.declared.pous[path[0]].decl->name.span,
+        name(path[0]) + " calls itself" + (through.empty() ? "" : " through " + through),
+        "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
 }
 
 // Depth first through what declares no depth, with a stack of its own: chains may be long.

@@ -1,7 +1,5 @@
 #include "frontend/sema/sema.h"
 
-#include "frontend/sema/phase.h"
-
 namespace frontend {
 
 Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t library_file,
@@ -19,10 +17,6 @@ Sema::Sema(const base::SourceMap& source_map, const Tree& syntax, uint32_t libra
   globals.kind = ir::Kind::kGlobals;
   program.globals = program.types.declare(std::move(globals));
 }
-
-const Variable& Sema::resolve(VarId id) { return Phase(*this, scope_).resolve(id); }
-
-const Note& Sema::infer(ExprId expr) { return Phase(*this, scope_).infer(expr); }
 
 void Sema::mark_used(VarId id) {
   declared.variables[id.index].used = true;

@@ -12,13 +12,10 @@
 #include "base/diagnostics.h"
 #include "base/source.h"
 #include "frontend/compile.h"
-#include "frontend/sema/callee.h"
 #include "frontend/sema/constant.h"
 #include "frontend/sema/declarations.h"
 #include "frontend/sema/facts.h"
 #include "frontend/sema/namespaces.h"
-#include "frontend/sema/objects.h"
-#include "frontend/sema/pools.h"
 #include "frontend/sema/reporter.h"
 #include "frontend/sema/start_values.h"
 #include "ir/types/layout.h"
@@ -44,46 +41,6 @@ class Sema {
   void mark_used(VarId id);
   void mark_written(VarId id);
   bool for_tests() const { return purpose == Purpose::kTest; }
-  bool in_test() const { return scope_.pou != nullptr && scope_.pou->test; }
-
-  // --- variables and members (variables.cc)
-  const Variable& resolve(VarId id);
-
-  // --- expressions (infer*.cc)
-  const Note& infer(ExprId expr);
-
-  // --- messages, from the scope that is looked at
-  void error(DiagnosticCode code, base::SourceSpan span, std::string text, Fix fix = {}) {
-    report.error(scope_, code, span, std::move(text), std::move(fix));
-  }
-  void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {}) {
-    report.warning(code, span, std::move(text), std::move(fix));
-  }
-  bool allow_narrowing(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
-    return report.allow_narrowing(scope_, from, to, span);
-  }
-  void allow_extension(std::string_view what, base::SourceSpan span, std::string fix = {}) {
-    report.allow_extension(scope_, what, span, std::move(fix));
-  }
-
-  // A phase, for the scope that is looked at.
-  template <class Wanted>
-  Wanted ask() {
-    return Wanted(*this, scope_);
-  }
-
-  // The POU whose names are visible; set while anything of it is resolved.
-  class Within {
-   public:
-    Within(Sema& sema, uint32_t pou);
-    ~Within();
-    Within(const Within&) = delete;
-    Within& operator=(const Within&) = delete;
-
-   private:
-    Sema& sema_;
-    PouScope saved_;
-  };
 
   const base::SourceMap& sources;
   const Tree& tree;
@@ -96,14 +53,12 @@ class Sema {
   Facts facts;
   Addresses addresses;
   Tests tests;
+  Pooled pools;
+  Started started;
   Reporter report;
   BodyLog* log = nullptr;  // of the body that is lowered, where somebody keeps one
-  Objects objects{*this};
   StartValues start_values{*this};
   Namespaces namespaces{*this};
-  Pools pools{*this};
-
-  PouScope scope_;  // whose names are visible
 };
 
 }  // namespace frontend

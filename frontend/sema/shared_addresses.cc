@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 #include "ir/types/address_text.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
@@ -30,25 +30,25 @@ bool same_place(const Located& a, const Located& b) { return place_key(a) == pla
 
 }  // namespace
 
-const AddressView* direct_view(Sema& sema, const Expr& expr) {
-  const auto& views = sema.addresses.views;
+const AddressView* direct_view(const Phase& phase, const Expr& expr) {
+  const auto& views = phase.sema().addresses.views;
   if (views.empty()) return nullptr;
-  const ir::DirectAddress address = sema.tree.directs[expr.number].address;
+  const ir::DirectAddress address = phase.sema().tree.directs[expr.number].address;
   const auto found =
-      views.find(address_key(address, sema.ask<Variables>().type_of_direct(address)));
+      views.find(address_key(address, phase.ask<Variables>().type_of_direct(address)));
   return found == views.end() ? nullptr : &found->second;
 }
 
 std::string SharedAddresses::path_of(const Variable& variable) const {
   std::string list(variable.list);
   if (list.empty() && variable.storage == Storage::kMember) {
-    list = sema_.ask<Collection>().static_list_name(sema_.declared.pous[variable.pou]);
+    list = ask<Collection>().static_list_name(sema_.declared.pous[variable.pou]);
   }
   return (list.empty() ? "" : list + ".") + std::string(variable.name.text);
 }
 
 uint64_t SharedAddresses::bits_of(ir::TypeId type, const ir::DirectAddress& address) {
-  if (const uint32_t bits = sema_.ask<Variables>().address_bits(type); bits != 0) return bits;
+  if (const uint32_t bits = ask<Variables>().address_bits(type); bits != 0) return bits;
   if (!natural_) natural_ = ir::natural_layouts(sema_.program.types);
   return ir::located_bits(sema_.program.types, *natural_, type, address);
 }
@@ -62,10 +62,9 @@ void SharedAddresses::collect_variables() {
                          decl->levels.count == 0 && can_share(decl->address);
     if (!located || variable.hidden || variable.section == VarSection::kExternal) continue;
     if (variable.storage == Storage::kLocal) continue;  // reported with the variable
-    Sema::Within scope(sema_, variable.pou);
-    const ir::TypeId type = sema_.ask<Types>().resolve_type(decl->spec).type;
-    if (type.valid() &&
-        sema_.ask<Variables>().address_problem(type, decl->address, false).empty()) {
+    const PouScope scope = sema_.declared.scope_of(variable.pou);
+    const ir::TypeId type = Types(sema_, scope).resolve_type(decl->spec).type;
+    if (type.valid() && ask<Variables>().address_problem(type, decl->address, false).empty()) {
       found.emplace_back(i, type);
     }
   }
@@ -82,7 +81,7 @@ void SharedAddresses::collect_direct() {
     if (expr.kind != ExprKind::kDirect) return;
     const ir::DirectAddress address = sema_.tree.directs[expr.number].address;
     if (!can_share(address)) return;
-    const ir::TypeId type = sema_.ask<Variables>().type_of_direct(address);
+    const ir::TypeId type = ask<Variables>().type_of_direct(address);
     const Located located{address, type, expr.span, ir::address_text(address)};
     if (seen.contains(place_key(located))) return;
     if (!sema_.for_tests() && is_in_test(sema_.tree, expr.span.begin)) return;
@@ -168,7 +167,7 @@ std::string SharedAddresses::why_not(const Place& place, bool one_place) const {
 // Whatever bits others write have to be a value of it.
 std::string SharedAddresses::why_not_type(ir::TypeId type) const {
   const ir::TypeTable& types = sema_.program.types;
-  if (sema_.ask<Variables>().address_bits(type) == 1) {
+  if (ask<Variables>().address_bits(type) == 1) {
     return types[type].kind == ir::Kind::kBool ? std::string() : "not each bit is a value of it";
   }
   std::vector<ir::TypeId> open{type};
@@ -211,9 +210,9 @@ void SharedAddresses::report(const Place& place, const Group& group, const std::
   } else {
     text += " is one place for several instances, but cannot be shared: ";
   }
-  sema_.error(DiagnosticCode::kBadAddress, here.span, text + why,
-              "give one of them another address, or declare here a type of numbers, bits or times "
-              "in VAR_GLOBAL or in VAR of a program");
+  error(DiagnosticCode::kBadAddress, here.span, text + why,
+        "give one of them another address, or declare here a type of numbers, bits or times "
+        "in VAR_GLOBAL or in VAR of a program");
 }
 
 bool SharedAddresses::check(const Group& group, bool one_place) {
@@ -224,7 +223,7 @@ bool SharedAddresses::check(const Group& group, bool one_place) {
     return false;
   }
   for (const Place& place : group) {
-    if (place.variable.valid()) sema_.resolve(place.variable);
+    if (place.variable.valid()) resolve(place.variable);
   }
   return check_initial(group);
 }
@@ -233,7 +232,7 @@ bool SharedAddresses::check(const Group& group, bool one_place) {
 bool SharedAddresses::check_initial(const Group& group) {
   const Place* furthest = nullptr;
   for (const Place& place : group) {
-    if (!place.variable.valid() || !sema_.resolve(place.variable).init.valid()) continue;
+    if (!place.variable.valid() || !resolve(place.variable).init.valid()) continue;
     if (furthest != nullptr && place.located.address.bit_offset < furthest->end()) {
       report(place, {*furthest}, "both have an initial value");
       return false;
@@ -248,8 +247,8 @@ void SharedAddresses::make_one(const Group& group) {
   const VarId first = group[0].variable;
   Variable& one = sema_.declared.variables[first.index];
   if (one.storage != Storage::kGlobal) {
-    one.list = sema_.declared.keep_name(
-        sema_.ask<Collection>().static_list_name(sema_.declared.pous[one.pou]));
+    one.list =
+        sema_.declared.keep_name(ask<Collection>().static_list_name(sema_.declared.pous[one.pou]));
     programs_[one.pou] = true;
     one.storage = Storage::kGlobal;
     sema_.declared.global_order.push_back(first);
@@ -389,7 +388,7 @@ void SharedAddresses::number_again() {
     if (variable.view.global != AddressView::kNone) variable.index = variable.view.global;
   }
   for (const auto& [pou, left] : programs_)
-    sema_.ask<Collection>().number_variables(sema_.declared.pous[pou]);
+    ask<Collection>().number_variables(sema_.declared.pous[pou]);
 }
 
 }  // namespace frontend

@@ -10,16 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/sema/model.h"
+#include "frontend/sema/phase.h"
 #include "ir/types/layout.h"
 
 namespace frontend {
 
-class Sema;
-
-class SharedAddresses {
+class SharedAddresses : public Phase {
  public:
-  explicit SharedAddresses(Sema& sema) : sema_(sema) {}
+  using Phase::Phase;
 
   // When types are resolved, and no variable is yet. Reports what cannot share bytes (E2014).
   void find();
@@ -57,13 +55,12 @@ class SharedAddresses {
   void number_again();
   std::string path_of(const Variable& variable) const;
 
-  Sema& sema_;
   std::vector<Place> places_;
   std::optional<ir::Layouts> natural_;
   std::map<uint32_t, bool> programs_;  // by POU: a variable of it left
 };
 
 // Where a bare address shares bytes; null: it is a global by itself.
-const AddressView* direct_view(Sema& sema, const Expr& expr);
+const AddressView* direct_view(const Phase& phase, const Expr& expr);
 
 }  // namespace frontend

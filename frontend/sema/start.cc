@@ -9,6 +9,7 @@
 #include "frontend/sema/collection.h"
 #include "frontend/sema/interfaces.h"
 #include "frontend/sema/objects.h"
+#include "frontend/sema/pools.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types.h"
 #include "frontend/sema/variables.h"
@@ -58,14 +59,15 @@ bool Objects::constructs(ir::TypeId type) {
   const ir::TypeTable& types = sema_.program.types;
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return false;
-  if (auto known = constructs_.find(type); known != constructs_.end()) return known->second;
-  constructs_.emplace(type, false);  // types do not contain themselves
+  if (auto known = sema_.started.constructs.find(type); known != sema_.started.constructs.end())
+    return known->second;
+  sema_.started.constructs.emplace(type, false);  // types do not contain themselves
   const PouInfo* block = sema_.declared.pou_of(type);
   bool needed = block != nullptr && (block->stamp.valid() || has_members_to_start(*block));
   for (size_t i = 0; block == nullptr && i < types[type].members.size() && !needed; ++i) {
     needed = constructs(types[type].members[i].type);
   }
-  constructs_[type] = needed;
+  sema_.started.constructs[type] = needed;
   return needed;
 }
 
@@ -88,9 +90,9 @@ void Objects::check_start_arguments(SpecId id, ir::TypeId type, std::vector<bool
   }
   good[id.index] = true;
   if (!arguments || !type.valid() || constructs(type)) return;
-  sema_.error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
-              "`" + sema_.report.type_text(type) + "` has no FB_Init that takes arguments",
-              "write `:=` and a value, or (member := value)");
+  error(DiagnosticCode::kBadConstruction, sema_.tree[id].span,
+        "`" + sema_.report.type_text(type) + "` has no FB_Init that takes arguments",
+        "write `:=` and a value, or (member := value)");
 }
 
 // Arguments stand after the types of variables, members of structures and declared types, and
@@ -103,7 +105,7 @@ void Objects::check_start_arguments() {
   }
   auto check = [&](SpecId id) {
     if (!id.valid() || !has_arguments(sema_.tree, id)) return;
-    check_start_arguments(id, sema_.ask<Types>().resolve_type(id).type, good);
+    check_start_arguments(id, ask<Types>().resolve_type(id).type, good);
   };
   for (const TypeDecl& decl : sema_.tree.types) check(decl.spec);
   for (const Spec& spec : sema_.tree.specs) {
@@ -113,15 +115,14 @@ void Objects::check_start_arguments() {
   for (uint32_t i = 0; i < sema_.tree.specs.size(); ++i) {
     const Spec& spec = sema_.tree.specs[i];
     if (good[i] || (!spec.has_args && spec.element_args.count == 0)) continue;
-    sema_.error(DiagnosticCode::kBadConstruction, spec.span,
-                "arguments of FB_Init have no place here",
-                "give them where a variable, a member or a type is declared");
+    error(DiagnosticCode::kBadConstruction, spec.span, "arguments of FB_Init have no place here",
+          "give them where a variable, a member or a type is declared");
   }
 }
 
 // After all interfaces are resolved and the program instances are known.
 void Objects::add_start() {
-  sema_.pools.declare();
+  ask<Pools>().declare();
   check_start_arguments();
   if (sema_.report.has_errors()) return;
   const auto count = static_cast<uint32_t>(sema_.declared.pous.size());
@@ -133,24 +134,24 @@ void Objects::add_start() {
     const Variable& variable = sema_.declared.variables[i];
     const bool global = variable.storage == Storage::kGlobal && !variable.hidden &&
                         variable.section != VarSection::kExternal;
-    if (global && starts(variable.type, variable.init)) start_globals_.push_back(VarId(i));
+    if (global && starts(variable.type, variable.init)) sema_.started.globals.push_back(VarId(i));
   }
   for (const ir::ProgramInstance& instance : sema_.program.instances) {
     const PouInfo* program = sema_.declared.pou_of(instance.type);
     if (program != nullptr && program->start != kNoPou) {
-      start_globals_.push_back(program_global(instance.name, *program));
+      sema_.started.globals.push_back(program_global(instance.name, *program));
     }
   }
   for (uint32_t i = 0; i < count; ++i) {
     const PouInfo& program = sema_.declared.pous[i];
     if (!program.as_block || program.start == kNoPou) continue;
-    start_globals_.push_back(sema_.ask<Variables>().program_variable(program.name, false));
+    sema_.started.globals.push_back(ask<Variables>().program_variable(program.name, false));
   }
-  const bool pools = !sema_.pools.all().empty();
-  if (sema_.declared.pous.size() == count && start_globals_.empty() && !pools) return;
-  change_flag_ = add_hidden_global(kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword),
-                                   base::SourceSpan());
-  if (start_globals_.empty() && !pools) return;  // blocks that nobody has an instance of
+  const bool pools = !sema_.pools.all.empty();
+  if (sema_.declared.pous.size() == count && sema_.started.globals.empty() && !pools) return;
+  sema_.started.change_flag = add_hidden_global(
+      kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword), base::SourceSpan());
+  if (sema_.started.globals.empty() && !pools) return;  // blocks that nobody has an instance of
   add_start_program();
 }
 
@@ -177,16 +178,15 @@ uint32_t Objects::add_made_method(uint32_t block, std::string_view name, MadeCod
   info.owner = block;
   info.self = owner.self;
   info.made = code;
-  sema_.ask<Collection>().add_code(info,
-                                   sema_.program.types[owner.self].name + "." + std::string(name));
-  sema_.ask<Interfaces>().resolve_interface(number);
+  ask<Collection>().add_code(info, sema_.program.types[owner.self].name + "." + std::string(name));
+  ask<Interfaces>().resolve_interface(number);
   return number;
 }
 
 // The global through which code reaches a program instance.
 VarId Objects::program_global(const std::string& name, const PouInfo& program) {
   if (ir::same_name(name, program.decl->name.text))
-    return sema_.ask<Variables>().program_variable(name, false);
+    return ask<Variables>().program_variable(name, false);
   return add_hidden_global(sema_.declared.keep_name(name), program.self, program.decl->name.span);
 }
 
@@ -202,7 +202,7 @@ VarId Objects::add_hidden_global(std::string_view name, ir::TypeId type, base::S
   variable.type = type;
   variable.progress = Progress::kDone;
   sema_.declared.variables.push_back(variable);
-  sema_.ask<Variables>().place_global(id);
+  ask<Variables>().place_global(id);
   return id;
 }
 
@@ -246,12 +246,13 @@ uint32_t Objects::stamp_of(const PouInfo& block) const {
 void Objects::add_start_program() {
   PouDecl& made = sema_.declared.made_decls.emplace_back();
   made.kind = PouKind::kProgram;
-  const VarId first = start_globals_.empty() ? sema_.pools.all()[0].elements : start_globals_[0];
+  const VarId first =
+      sema_.started.globals.empty() ? sema_.pools.all[0].elements : sema_.started.globals[0];
   made.span = sema_.declared.variables[first.index].name.span;
   made.name = {ir::kStartProgram, made.span};
-  const uint32_t number = sema_.ask<Collection>().add_pou(made, false, made.name.text);
+  const uint32_t number = ask<Collection>().add_pou(made, false, made.name.text);
   sema_.declared.pous[number].made = MadeCode::kStart;
-  sema_.ask<Interfaces>().resolve_interface(number);
+  ask<Interfaces>().resolve_interface(number);
   ir::Task task;
   task.name = ir::kStartProgram;
   task.period_ns = 0;

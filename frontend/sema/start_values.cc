@@ -7,13 +7,13 @@
 
 namespace frontend {
 
-ir::ConstId StartValues::add(ExprId id) {
+ir::ConstId StartValues::add(const PouScope& scope, ExprId id) {
   const base::SourceSpan span = sema_.tree[id].span;
   const uint32_t file = sema_.sources.file_of(span.begin);
   const uint32_t begin = sema_.sources.begin(file).offset;
   std::string text(sema_.sources.text(file).substr(span.begin.offset - begin,
                                                    span.end.offset - span.begin.offset));
-  text = scope_name() + ":" + ir::fold_name(text);
+  text = scope_name(scope) + ":" + ir::fold_name(text);
   for (uint64_t seed = 0;; ++seed) {
     const uint64_t handle = ir::unbound_handle(base::hash64(base::as_bytes(text), seed));
     auto [found, added] = expressions_.try_emplace(handle, Expression{id, text});
@@ -22,9 +22,9 @@ ir::ConstId StartValues::add(ExprId id) {
 }
 
 // The name of the POU that is looked at; "" outside of all.
-std::string StartValues::scope_name() const {
-  if (sema_.scope_.pou == nullptr) return {};
-  const PouInfo& pou = *sema_.scope_.pou;
+std::string StartValues::scope_name(const PouScope& scope) const {
+  if (scope.pou == nullptr) return {};
+  const PouInfo& pou = *scope.pou;
   if (pou.self.valid()) return ir::fold_name(sema_.program.types[pou.self].name);
   return ir::fold_name(pou.decl->name.text);
 }
@@ -60,7 +60,7 @@ bool StartValues::look_inside(ir::TypeId id, ir::ConstId init) {
   for (uint32_t i = 0; i < type.members.size(); ++i) {
     const ir::Member& member = type.members[i];
     if (!ir::is_listed(member)) continue;
-    const ir::ConstId listed = sema_.ask<Constants>().listed(init, i);
+    const ir::ConstId listed = Constants(sema_).listed(init, i);
     const bool own = ir::is_structure(type.kind) || listed.valid();
     if (own && inside(member.type, listed.valid() ? listed : member.init)) return true;
   }

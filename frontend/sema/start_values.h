@@ -20,8 +20,8 @@ class StartValues {
  public:
   explicit StartValues(Sema& sema) : sema_(sema) {}
 
-  // The initial value that stands for `expr`, in the POU that is looked at.
-  ir::ConstId add(ExprId expr);
+  // The initial value that stands for `expr`, in the scope.
+  ir::ConstId add(const PouScope& scope, ExprId expr);
   bool empty() const { return expressions_.empty(); }
   // Invalid: the handle is none of these.
   ExprId find(uint64_t handle) const;
@@ -30,7 +30,7 @@ class StartValues {
   bool inside(ir::TypeId type, ir::ConstId init);
 
  private:
-  std::string scope_name() const;
+  std::string scope_name(const PouScope& scope) const;
   bool look_inside(ir::TypeId type, ir::ConstId init);
 
   struct Expression {

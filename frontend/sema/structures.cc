@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/old_names.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/rename_rules.h"
@@ -131,7 +132,7 @@ bool Types::is_bit(SpecId id) const {
 bool Types::add_field(StructBuild& build, const VarDecl& field) {
   TypeUse use = resolve_type(field.spec);
   if (!use.type.valid()) return false;
-  if (!field.names.empty()) sema_.objects.check_instance(use.type, field.names[0].span);
+  if (!field.names.empty()) ask<Objects>().check_instance(use.type, field.names[0].span);
   bool bit = is_bit(field.spec);
   ir::Member member;
   member.type = use.type;
@@ -159,7 +160,7 @@ bool Types::add_field(StructBuild& build, const VarDecl& field) {
     }
     if (bit) continue;
     member.name = name.text;
-    member.old_name = OldNames(sema_).of_rule(field.attributes);
+    member.old_name = ask<OldNames>().of_rule(field.attributes);
     build.type.overlap |= field.has_address && field.address.area == ir::DirectArea::kNone;
     build.type.members.push_back(member);
   }
@@ -190,7 +191,7 @@ void Types::close_bits(StructBuild& build) {
     word.name = joined_bits(build.bit_names, build.bit_names.size());
     const std::vector<std::string> rules =
         old_names_of_bits(build.bit_names, build.bit_rules, build.bit_defaults);
-    word.old_name = OldNames(sema_).add(ir::old_names_rule(rules));
+    word.old_name = ask<OldNames>().add(ir::old_names_rule(rules));
     if (build.bit_defaults != 0) word.init = sema_.program.constants.scalar(build.bit_defaults);
   }
   build.bit_member = -1;

@@ -25,8 +25,8 @@ void Configuration::add_task(const TaskDecl& decl) {
   task.period_ns = decl.single.valid() ? 0 : kDefaultPeriodNs;
   if (decl.single.valid()) task.event = event_of(decl.single);
   if (decl.interval.valid()) {
-    auto period = sema_.ask<Constants>().fold_bits(decl.interval,
-                                                   sema_.program.types.elementary(ir::Kind::kTime));
+    auto period =
+        ask<Constants>().fold_bits(decl.interval, sema_.program.types.elementary(ir::Kind::kTime));
     task.period_ns = period ? static_cast<int64_t>(*period) : kDefaultPeriodNs;
     // With SINGLE, an interval of 0 means that edges alone release the task.
     const bool too_long = task.period_ns > ir::kLongestTimeNs;
@@ -38,7 +38,7 @@ void Configuration::add_task(const TaskDecl& decl) {
     }
   }
   if (decl.priority.valid()) {
-    int64_t priority = sema_.ask<Constants>().fold_integer(decl.priority).value_or(0);
+    int64_t priority = ask<Constants>().fold_integer(decl.priority).value_or(0);
     if (priority < 0 || priority > kMaxPriority) {
       error(DiagnosticCode::kBadPriority, decl.span,
             "task " + quoted(decl.name) + " has the priority " + std::to_string(priority),
@@ -47,7 +47,7 @@ void Configuration::add_task(const TaskDecl& decl) {
     }
     task.priority = static_cast<uint32_t>(priority);
   }
-  apply_task_attributes(sema_, decl, task);
+  apply_task_attributes(*this, decl, task);
   sema_.program.tasks.push_back(std::move(task));
 }
 
@@ -62,7 +62,7 @@ uint32_t Configuration::event_of(ExprId id) {
           "copy the bit to a global variable of its own");
     return ir::kNoEvent;
   }
-  if (boolean && expr.kind == ExprKind::kDirect) return sema_.ask<Variables>().direct_member(expr);
+  if (boolean && expr.kind == ExprKind::kDirect) return ask<Variables>().direct_member(expr);
   if (boolean && note.variable.valid()) {
     const Variable& variable = resolve(note.variable);
     if (variable.storage == Storage::kGlobal && !variable.constant) return variable.index;

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "frontend/sema/collection.h"
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 #include "frontend/sema/test_build.h"
 
 namespace frontend {
@@ -18,39 +18,39 @@ std::string_view without_quotes(std::string_view text) {
 }
 
 // By its name people choose a test, and reports know it again.
-void check_test_name(Sema& sema, const PouDecl& test) {
-  const base::SourceLocation at = sema.sources.locate(test.span.begin);
+void check_test_name(const Phase& phase, const PouDecl& test) {
+  const base::SourceLocation at = phase.sema().sources.locate(test.span.begin);
   const std::string_view name = without_quotes(test.name.text);
   if (name.empty()) {
-    sema.error(DiagnosticCode::kExpectedName, test.name.span, "the test has no name",
-               "say what it shows: TEST 'pump starts'");
+    phase.error(DiagnosticCode::kExpectedName, test.name.span, "the test has no name",
+                "say what it shows: TEST 'pump starts'");
   }
-  for (const TestCase& other : sema.tests.cases) {
+  for (const TestCase& other : phase.sema().tests.cases) {
     if (other.file != at.file || other.name != name || name.empty()) continue;
-    sema.error(DiagnosticCode::kDuplicateName, test.name.span,
-               "a second test `" + std::string(name) + "`; the first is in line " +
-                   std::to_string(other.line),
-               "give it a name of its own: reports and --filter know tests by it");
+    phase.error(DiagnosticCode::kDuplicateName, test.name.span,
+                "a second test `" + std::string(name) + "`; the first is in line " +
+                    std::to_string(other.line),
+                "give it a name of its own: reports and --filter know tests by it");
   }
 }
 
-void check_idle(Sema& sema) {
+void check_idle(const Phase& phase) {
   std::set<uint32_t> files;
-  auto file_of = [&](const PouDecl& decl) { return sema.sources.file_of(decl.span.begin); };
-  for (const PouDecl& decl : sema.tree.tests) {
+  auto file_of = [&](const PouDecl& decl) { return phase.sema().sources.file_of(decl.span.begin); };
+  for (const PouDecl& decl : phase.sema().tree.tests) {
     if (decl.kind == PouKind::kTest) files.insert(file_of(decl));
   }
-  for (const PouDecl& decl : sema.tree.tests) {
+  for (const PouDecl& decl : phase.sema().tree.tests) {
     if (files.contains(file_of(decl))) continue;
-    sema.warning(DiagnosticCode::kUnusedVariable, {decl.span.begin, decl.span.begin},
-                 "this is never used: the file has no TEST", "put it into the file of its tests");
+    phase.warning(DiagnosticCode::kUnusedVariable, {decl.span.begin, decl.span.begin},
+                  "this is never used: the file has no TEST", "put it into the file of its tests");
   }
 }
 
 }  // namespace
 
 void TestBuild::collect_tests() {
-  check_idle(sema_);
+  check_idle(*this);
   for (const PouDecl& decl : sema_.tree.tests) {
     if (decl.kind == PouKind::kTest) collect_test(decl);
   }
@@ -63,7 +63,7 @@ void TestBuild::collect_tests() {
 }
 
 void TestBuild::collect_test(const PouDecl& test) {
-  check_test_name(sema_, test);
+  check_test_name(*this, test);
   const uint32_t file = sema_.sources.file_of(test.span.begin);
   const PouDecl* setup = nullptr;
   const PouDecl* teardown = nullptr;
@@ -121,7 +121,7 @@ void TestBuild::add_test_globals() {
   for (const Stmt& stmt : sema_.tree.stmts) {
     if (stmt.kind != StmtKind::kMockFunction || !stmt.target.valid()) continue;
     const Expr& target = sema_.tree[stmt.target];
-    const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, target);
+    const std::string_view name = sema_.namespaces.find(NameSort::kDeclaration, scope_, target);
     if (!name.empty()) add_function_mock(name, target.span);
   }
   resolve_mock_bodies();

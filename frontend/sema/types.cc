@@ -87,7 +87,6 @@ std::optional<TypeUse> Types::find_type(std::string_view name) {
   if (!declared_pou && !sema_.declared.types.contains(name))
     ask<Collection>().use_library_type(name);
   if (auto known = sema_.declared.types.find(name); known != sema_.declared.types.end()) {
-    const Sema::Within outside(sema_, kNoPou);
     return Types(sema_).resolve_type(known->second);
   }
   if (!sema_.declared.pou_names.contains(name) && !ask<Collection>().use_library(name))
@@ -254,7 +253,7 @@ TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {
       return {};
     }
     type.literals.push_back(
-        {name, static_cast<int64_t>(next), OldNames(sema_).of_rule(enumerator.attributes)});
+        {name, static_cast<int64_t>(next), ask<OldNames>().of_rule(enumerator.attributes)});
     next += 1;
   }
   if (type.literals.empty()) return {};

@@ -4,8 +4,8 @@
 
 namespace frontend {
 
-class Sema;
+class Phase;
 
-void report_unused(Sema& sema);
+void report_unused(const Phase& phase);
 
 }  // namespace frontend

@@ -3,6 +3,7 @@
 
 #include "frontend/parse/il_operators.h"
 #include "frontend/sema/constants.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types.h"
@@ -19,7 +20,7 @@ VarId Variables::find_variable(const Name& name) {
   if (scope_.pou != nullptr) {
     const PouInfo& pou = *scope_.pou;
     if (auto found = pou.names.find(name.text); found != pou.names.end()) return found->second;
-    VarId id = sema_.objects.find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name.text);
+    VarId id = ask<Objects>().find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name.text);
     if (id.valid()) return id;
   }
   return sema_.namespaces.find_global(name);
@@ -42,7 +43,6 @@ const Variable& Variables::resolve_now(VarId id) {
   }
   variable.progress = Progress::kBusy;
   ++sema_.facts.depth;
-  const Sema::Within within(sema_, variable.pou);
   Variables(sema_, sema_.declared.scope_of(variable.pou)).resolve_variable(id);
   --sema_.facts.depth;
   variable.progress = Progress::kDone;
@@ -139,7 +139,7 @@ void Variables::check_placement(const Variable& variable) {
           "TEST");
   }
   if (variable.section != VarSection::kInOut)
-    sema_.objects.check_instance(variable.type, variable.name.span);
+    ask<Objects>().check_instance(variable.type, variable.name.span);
   bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
   bool anew = variable.storage == Storage::kLocal || variable.section == VarSection::kTemp;
   if (holds_instance && anew && variable.section != VarSection::kInOut) {

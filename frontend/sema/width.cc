@@ -35,8 +35,8 @@ Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& l
   return note;
 }
 
-Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vector<ExprId>& args,
-                     const Note& note, bool typed) {
+Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
+                     const std::vector<ExprId>& args, const Note& note, bool typed) {
   using stdlib::FunctionRule;
   if (typed) return Width::kOwn;  // MAX_INT
   switch (row.rule) {
@@ -44,12 +44,12 @@ Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vect
     case FunctionRule::kBitwise:
       return note.width;
     case FunctionRule::kNumberSame:
-      return width_of(sema, note, false);
+      return width_of(phase.sema(), note, false);
     case FunctionRule::kMove:
     case FunctionRule::kSelect:
     case FunctionRule::kMux:
     case FunctionRule::kExtreme:
-      return is_small(sema, note) && has_wide(sema, args) ? Width::kWide : Width::kOwn;
+      return is_small(phase.sema(), note) && has_wide(phase, args) ? Width::kWide : Width::kOwn;
     case FunctionRule::kReal:
     case FunctionRule::kTrunc:
     case FunctionRule::kShift:
@@ -72,16 +72,17 @@ Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vect
   return Width::kOwn;
 }
 
-bool has_wide(Sema& sema, const std::vector<ExprId>& operands) {
+bool has_wide(const Phase& phase, const std::vector<ExprId>& operands) {
   return std::any_of(operands.begin(), operands.end(),
-                     [&](ExprId id) { return sema.infer(id).width == Width::kWide; });
+                     [&](ExprId id) { return phase.infer(id).width == Width::kWide; });
 }
 
-ir::TypeId compared_type(Sema& sema, ir::TypeId common, const std::vector<ExprId>& operands) {
+ir::TypeId compared_type(const Phase& phase, ir::TypeId common,
+                         const std::vector<ExprId>& operands) {
   Note meeting;
   meeting.type = common;
-  const bool wide = is_small(sema, meeting) && has_wide(sema, operands);
-  return wide ? sema.program.types.elementary(ir::Kind::kDint) : common;
+  const bool wide = is_small(phase.sema(), meeting) && has_wide(phase, operands);
+  return wide ? phase.sema().program.types.elementary(ir::Kind::kDint) : common;
 }
 
 Note widened_by(const Sema& sema, Note note, ExprId operand) {

@@ -22,12 +22,13 @@ Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& l
                     const Note& right);
 // The width of a standard function's result. Functions that CODESYS calls operators (ADD, MAX, SEL,
 // ABS, ...) compute as operators do; arguments of all others are passed, which cuts them.
-Width standard_width(Sema& sema, const stdlib::FunctionRow& row, const std::vector<ExprId>& args,
-                     const Note& note, bool typed);
+Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
+                     const std::vector<ExprId>& args, const Note& note, bool typed);
 // What operands that have a type in common are compared in: DINT where one of them is wide.
-ir::TypeId compared_type(Sema& sema, ir::TypeId common, const std::vector<ExprId>& operands);
+ir::TypeId compared_type(const Phase& phase, ir::TypeId common,
+                         const std::vector<ExprId>& operands);
 // Was one of them made by an operator that computes it as DINT?
-bool has_wide(Sema& sema, const std::vector<ExprId>& operands);
+bool has_wide(const Phase& phase, const std::vector<ExprId>& operands);
 // A literal that does not fit the type of the other operand gives the operation its own type: DINT,
 // or a longer one.
 Note widened_by(const Sema& sema, Note note, ExprId operand);
