@@ -86,7 +86,7 @@ ir::ValueId Body::emit_assignment(const Expr& expr) {
     return attempt(expr.operand, expr.right, expr.span).handle;
   }
   auto to = assign_value(expr.operand, expr.right, expr.span);
-  return to ? load(*to) : zero(infer(expr.operand).type);
+  return to ? load(*to) : code_.zero(infer(expr.operand).type);
 }
 
 ir::Place Body::assignment_place(ExprId id, const Expr& expr) {

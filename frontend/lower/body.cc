@@ -115,7 +115,7 @@ void Body::find_line(base::SourcePos pos) {
   line_end_ = base + static_cast<uint32_t>(std::min(end, text.size()));
 }
 
-ir::ValueId Body::zero(ir::TypeId type) {
+ir::ValueId ValueCode::zero(ir::TypeId type) {
   bool usable = type.valid() && types().is_scalar(type);
   return build_.constant(usable ? scalar(type) : ir::Scalar::kI32, 0);
 }

@@ -15,6 +15,7 @@
 #include "frontend/lower/builder.h"
 #include "frontend/lower/handles.h"
 #include "frontend/lower/target.h"
+#include "frontend/lower/value_code.h"
 #include "frontend/sema/phase.h"
 #include "stdlib/native/natives.h"
 
@@ -160,13 +161,9 @@ class Body : public Phase {
   bool is_character(ExprId expr);
   ir::ValueId character_position(const Expr& expr);
   ir::ValueId emit_character(const Expr& expr);
-  ir::ValueId load_character(const ir::Place& string, ir::ValueId position);
-  void store_character(const ir::Place& string, ir::ValueId position, ir::ValueId value);
 
   // --- pointers and references (reference.cc)
-  ir::Place target_place(ir::ValueId handle, ir::TypeId type) const;
   ir::Place dereferenced_place(const Expr& expr);
-  ir::ValueId moved(ir::ValueId handle, ir::ValueId count, ir::TypeId element);
   ir::Place addressable_place(ExprId id);
   ir::ValueId handle_of(ExprId id);
   ir::ValueId raw_reference(ExprId id);
@@ -190,36 +187,16 @@ class Body : public Phase {
   ir::ValueId emit(ExprId expr, ir::TypeId own);
   ir::TypeId own_type(const Note& note, ir::TypeId target) const;
   ir::ValueId emit_bit(ExprId id);
-  ir::ValueId part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset, uint32_t size);
   ir::ValueId emit_unary(const Expr& expr, ir::TypeId own);
   ir::ValueId emit_binary(const Expr& expr, ir::TypeId own);
   ir::ValueId emit_lazy(const Expr& expr);
   ir::ValueId emit_comparison(BinaryOp op, ExprId left, ExprId right);
   ir::ValueId compare_strings(BinaryOp op, ExprId left, ExprId right);
-  ir::ValueId compare_places(BinaryOp op, const ir::Place& a, const ir::Place& b);
-  ir::ValueId compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b);
   ir::ValueId emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
-  Typed time_arithmetic(BinaryOp op, Typed left, Typed right);
-  ir::ValueId scale_time(BinaryOp op, ir::ValueId time, Typed factor);
-  ir::ValueId power(Typed base, Typed exponent, ir::TypeId own);
-  ir::ValueId number_op(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b);
 
   // --- conversions (convert.cc)
   ir::ValueId convert(Typed from, ir::TypeId to, base::SourceSpan span);
   bool fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span);  // or says why not
-  ir::ValueId check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to);
-  ir::ValueId machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar to,
-                              bool truncate = false);
-  ir::ValueId explicit_conversion(Typed from, ir::TypeId to, bool truncate);
-  ir::ValueId from_time(Typed from, ir::TypeId to);
-  ir::ValueId to_time(Typed from, ir::TypeId to);
-  ir::ValueId time_to_time(Typed from, ir::TypeId to);
-  ir::ValueId floor_modulo(ir::ValueId value, int64_t divisor);
-  ir::ValueId narrow_character(ir::ValueId wide_character);
-  ir::ValueId from_bcd(Typed from, ir::TypeId to);  // convert_bcd.cc
-  ir::ValueId to_bcd(Typed from, ir::TypeId to);
-  // Traps unless it holds.
-  void require(ir::ValueId condition, ir::TrapKind kind = ir::TrapKind::kConversion);
   // --- of strings (string_convert.cc)
   ir::Place to_string(const Expr& call, const Conversion& conversion, ir::TypeId type);
   ir::Place string_to_string(ExprId source, ir::TypeId type);
@@ -227,7 +204,6 @@ class Body : public Phase {
   void write_enumerator_name(const ir::Place& text, Typed source);
   ir::ValueId from_string(ExprId source, ir::TypeId to);
   ir::ValueId character_of(const ir::Place& text, ir::TypeId to);
-  ir::ValueId clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow);
   ir::Place narrow_string(ir::Place source, bool wide);
 
   // --- EN and ENO (enable.cc)
@@ -325,7 +301,6 @@ class Body : public Phase {
                     ir::TypeId own);
   ir::ValueId extreme(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                       ir::TypeId own);
-  ir::ValueId extreme_of(bool largest, ir::TypeId type, ir::ValueId a, ir::ValueId b);
   ir::ValueId multiplex(const std::vector<ExprId>& args, ir::TypeId own);
   ir::ValueId compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common);
   ir::ValueId string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
@@ -336,14 +311,12 @@ class Body : public Phase {
                            ir::TypeId type);
   ir::ValueId time_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
   ir::ValueId moment(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
-  ir::ValueId moment_part(ir::ValueId ns, uint32_t part);
   ir::ValueId day_of_week(ExprId moment);
   void split(const Expr& call, const stdlib::FunctionRow& row);
   ir::ValueId byte_order(ExprId argument, const stdlib::FunctionRow& row, ir::TypeId own);
   ir::ValueId is_valid(ExprId argument, const stdlib::FunctionRow& row);
   ir::Place choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                    ir::TypeId type);
-  ir::ValueId native(stdlib::NativeId id, ir::ValueList operands);
 
   // --- helpers
   void initialise_locals();
@@ -358,9 +331,7 @@ class Body : public Phase {
   const ir::TypeTable& types() const { return sema_.program.types; }
   ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }
   ir::TypeId elementary(ir::Kind kind) const { return types().elementary(kind); }
-  ir::ValueId zero(ir::TypeId type);
   bool wide(ir::TypeId type) const { return types()[type].kind == ir::Kind::kWstring; }
-  ir::ValueId string_value(const ir::Place& place);
 
   struct Loop {
     ir::BlockId again;
@@ -378,6 +349,7 @@ class Body : public Phase {
   uint32_t pou_number_;
   ir::Pou out_;
   Builder build_;
+  ValueCode code_{build_, sema_.program.types, sema_.options.dialect};
   std::vector<Loop> loops_;
   ir::BlockId exit_;               // what RETURN goes to; invalid: out of the POU
   std::vector<LabelList> labels_;  // of the statement lists around the current statement

@@ -328,7 +328,7 @@ ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId o
     case Callee::Kind::kFunction:
     case Callee::Kind::kMethod: {
       ir::ValueId result = call_function(expr, callee, true).value;
-      return result.valid() ? result : zero(own);
+      return result.valid() ? result : code_.zero(own);
     }
     case Callee::Kind::kStandard:
       return emit_standard(expr, callee, own);
@@ -337,7 +337,7 @@ ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId o
     case Callee::Kind::kReference:
       return emit_reference_call(expr, callee.reference, own);
     default:
-      return zero(own);
+      return code_.zero(own);
   }
 }
 

@@ -54,7 +54,7 @@ void Body::case_statement(const Stmt& stmt) {
   if (!type.valid() || !usable) type = elementary(ir::Kind::kDint);
   if (usable) type = computed_type(sema_, infer(stmt.value));
   ir::ValueId selector = value(stmt.value, usable ? type : ir::TypeId());
-  if (!usable) selector = zero(type);
+  if (!usable) selector = code_.zero(type);
   std::vector<ir::BlockId> arms;
   for (uint32_t i = 0; i < stmt.arms.count; ++i) arms.push_back(build_.new_block());
   ir::BlockId otherwise = build_.new_block();

@@ -22,7 +22,7 @@ ir::ValueId Body::character_position(const Expr& expr) {
   }
   uint32_t capacity = types()[infer(expr.operand).type].capacity;
   Typed given = natural(index);
-  ir::ValueId position = machine_convert(given.value, scalar(given.type), kI64);
+  ir::ValueId position = code_.machine_convert(given.value, scalar(given.type), kI64);
   if (first != 0) position = build_.binary(ir::Op::kSub, kI64, position, build_.constant(kI64, 1));
   // As one unsigned comparison: a negative position is a huge one.
   ir::ValueId number = build_.unary(ir::Op::kWrap, ir::Scalar::kU64, position);
@@ -39,17 +39,17 @@ ir::ValueId Body::character_position(const Expr& expr) {
 
 ir::ValueId Body::emit_character(const Expr& expr) {
   ir::Place string = place(expr.operand);
-  return load_character(string, character_position(expr));
+  return code_.load_character(string, character_position(expr));
 }
 
-ir::ValueId Body::load_character(const ir::Place& string, ir::ValueId position) {
+ir::ValueId ValueCode::load_character(const ir::Place& string, ir::ValueId position) {
   bool is_wide = wide(string.type);
   NativeId id = is_wide ? NativeId::kCharacterW : NativeId::kCharacterS;
   ir::ValueId character = native(id, {string_value(string), position});
   return build_.unary(ir::Op::kWrap, is_wide ? ir::Scalar::kU16 : ir::Scalar::kU8, character);
 }
 
-void Body::store_character(const ir::Place& string, ir::ValueId position, ir::ValueId value) {
+void ValueCode::store_character(const ir::Place& string, ir::ValueId position, ir::ValueId value) {
   NativeId id = wide(string.type) ? NativeId::kSetCharacterW : NativeId::kSetCharacterS;
   ir::ValueId unit = build_.unary(ir::Op::kWrap, ir::Scalar::kU64, value);
   native(id, {string_value(string), position, unit});

@@ -118,7 +118,7 @@ void ChartBody::request(uint32_t step, const sfc::Use& use) {
 
 ir::ValueId ChartBody::limit_of(const ActionUse& use) {
   ir::TypeId time = body_.elementary(ir::Kind::kTime);
-  return use.time.valid() ? body_.value(use.time, time) : body_.zero(time);
+  return use.time.valid() ? body_.value(use.time, time) : body_.code_.zero(time);
 }
 
 // The time is read while the step is active. What is stored already goes on counting.

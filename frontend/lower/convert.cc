@@ -37,8 +37,8 @@ uint64_t double_bits(double value) {
 
 }  // namespace
 
-ir::ValueId Body::machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar to,
-                                  bool truncate) {
+ir::ValueId ValueCode::machine_convert(ir::ValueId value, ir::Scalar from, ir::Scalar to,
+                                       bool truncate) {
   if (from == to) return value;
   if (to == ir::Scalar::kBool) {
     if (!ir::is_float(from)) return build_.unary(ir::Op::kToBool, to, value);
@@ -59,9 +59,9 @@ ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
   if (types().is_reference(from.type) || types().is_reference(to)) {
     return convert_reference(from, to, span);
   }
-  if (!fits(from.type, to, span)) return zero(to);
-  ir::ValueId out = machine_convert(from.value, scalar(from.type), scalar(to));
-  return check_range(out, from.type, to);
+  if (!fits(from.type, to, span)) return code_.zero(to);
+  ir::ValueId out = code_.machine_convert(from.value, scalar(from.type), scalar(to));
+  return code_.check_range(out, from.type, to);
 }
 
 bool Body::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
@@ -81,7 +81,7 @@ bool Body::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
   return true;
 }
 
-ir::ValueId Body::check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to) {
+ir::ValueId ValueCode::check_range(ir::ValueId value, ir::TypeId from, ir::TypeId to) {
   const ir::Type& range = types()[to];
   if (range.kind != ir::Kind::kSubrange) return value;
   const ir::Type& source = types()[from];
@@ -104,7 +104,7 @@ bool is_binary_transfer(const ir::TypeTable& types, ir::TypeId from, ir::TypeId 
 
 }  // namespace
 
-ir::ValueId Body::explicit_conversion(Typed from, ir::TypeId to, bool truncate) {
+ir::ValueId ValueCode::explicit_conversion(Typed from, ir::TypeId to, bool truncate) {
   bool time_source = is_time(types(), from.type);
   bool time_target = is_time(types(), to);
   if (time_source && time_target) return time_to_time(from, to);
@@ -114,13 +114,13 @@ ir::ValueId Body::explicit_conversion(Typed from, ir::TypeId to, bool truncate) 
       types().root_kind(to) == ir::Kind::kChar) {
     return narrow_character(from.value);
   }
-  if (sema_.options.dialect == Dialect::kIec && is_binary_transfer(types(), from.type, to)) {
+  if (dialect_ == Dialect::kIec && is_binary_transfer(types(), from.type, to)) {
     return build_.unary(ir::Op::kBits, scalar(to), from.value);
   }
   return machine_convert(from.value, scalar(from.type), scalar(to), truncate);
 }
 
-ir::ValueId Body::from_time(Typed from, ir::TypeId to) {
+ir::ValueId ValueCode::from_time(Typed from, ir::TypeId to) {
   int64_t unit = unit_of(types().root_kind(from.type));
   ir::Scalar machine = scalar(to);
   if (ir::is_float(machine)) {
@@ -137,7 +137,7 @@ ir::ValueId Body::from_time(Typed from, ir::TypeId to) {
   return machine_convert(count, ir::Scalar::kI64, machine);
 }
 
-ir::ValueId Body::to_time(Typed from, ir::TypeId to) {
+ir::ValueId ValueCode::to_time(Typed from, ir::TypeId to) {
   int64_t unit = unit_of(types().root_kind(to));
   ir::Scalar machine = scalar(from.type);
   if (ir::is_float(machine)) {
@@ -153,7 +153,7 @@ ir::ValueId Body::to_time(Typed from, ir::TypeId to) {
 }
 
 // Never negative, so that moments before 1970 belong to their own day.
-ir::ValueId Body::floor_modulo(ir::ValueId value, int64_t divisor) {
+ir::ValueId ValueCode::floor_modulo(ir::ValueId value, int64_t divisor) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   ir::ValueId by = build_.constant(kI64, static_cast<uint64_t>(divisor));
   ir::ValueId rest = build_.binary(ir::Op::kMod, kI64, value, by);
@@ -162,7 +162,7 @@ ir::ValueId Body::floor_modulo(ir::ValueId value, int64_t divisor) {
   return build_.select(kI64, negative, rest, raised);
 }
 
-ir::ValueId Body::time_to_time(Typed from, ir::TypeId to) {
+ir::ValueId ValueCode::time_to_time(Typed from, ir::TypeId to) {
   ir::Kind source = types().root_kind(from.type);
   ir::Kind target = types().root_kind(to);
   bool to_date = target == ir::Kind::kDate || target == ir::Kind::kLdate;
@@ -188,13 +188,13 @@ ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion
   ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : given);
   ir::ValueId source = value(argument, from);
   set_line(expr.span);
-  if (conversion.bcd == Conversion::Bcd::kFrom) return from_bcd({source, from}, to);
-  if (conversion.bcd == Conversion::Bcd::kTo) return to_bcd({source, from}, to);
-  return explicit_conversion({source, from}, to, conversion.truncate);
+  if (conversion.bcd == Conversion::Bcd::kFrom) return code_.from_bcd({source, from}, to);
+  if (conversion.bcd == Conversion::Bcd::kTo) return code_.to_bcd({source, from}, to);
+  return code_.explicit_conversion({source, from}, to, conversion.truncate);
 }
 
 // What Latin-1 lacks becomes a question mark, as in strings.
-ir::ValueId Body::narrow_character(ir::ValueId wide_character) {
+ir::ValueId ValueCode::narrow_character(ir::ValueId wide_character) {
   constexpr ir::Scalar kU16 = ir::Scalar::kU16;
   ir::ValueId most = build_.constant(kU16, 0xFF);
   ir::ValueId fits = build_.compare(ir::Op::kLe, kU16, wide_character, most);

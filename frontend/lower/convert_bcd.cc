@@ -4,7 +4,7 @@
 
 namespace frontend {
 
-ir::ValueId Body::from_bcd(Typed from, ir::TypeId to) {
+ir::ValueId ValueCode::from_bcd(Typed from, ir::TypeId to) {
   constexpr ir::Scalar kU64 = ir::Scalar::kU64;
   ir::ValueId bits = machine_convert(from.value, scalar(from.type), kU64);
   ir::ValueId number = native(stdlib::NativeId::kBcdToNumber, {bits});
@@ -15,7 +15,7 @@ ir::ValueId Body::from_bcd(Typed from, ir::TypeId to) {
 }
 
 // A negative number is a very large one when it is read without sign.
-ir::ValueId Body::to_bcd(Typed from, ir::TypeId to) {
+ir::ValueId ValueCode::to_bcd(Typed from, ir::TypeId to) {
   constexpr ir::Scalar kU64 = ir::Scalar::kU64;
   ir::ValueId number = machine_convert(from.value, scalar(from.type), kU64);
   uint64_t most = 1;
@@ -25,7 +25,7 @@ ir::ValueId Body::to_bcd(Typed from, ir::TypeId to) {
   return machine_convert(bcd, kU64, scalar(to));
 }
 
-void Body::require(ir::ValueId condition, ir::TrapKind kind) {
+void ValueCode::require(ir::ValueId condition, ir::TrapKind kind) {
   ir::BlockId good = build_.new_block();
   ir::BlockId bad = build_.new_block();
   build_.branch(condition, good, bad);

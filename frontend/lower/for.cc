@@ -126,7 +126,7 @@ void Body::for_step(const Stmt& stmt, ForLoop& loop) {
 
 void Body::for_test(const ForLoop& loop, ir::BlockId body, ir::BlockId exit) {
   const ir::ValueId variable = build_.load(loop.variable, loop.machine);
-  const ir::ValueId now = machine_convert(variable, loop.machine, loop.bound);
+  const ir::ValueId now = code_.machine_convert(variable, loop.machine, loop.bound);
   auto not_above = [&] { return build_.compare(ir::Op::kLe, loop.bound, now, loop.to); };
   auto not_below = [&] { return build_.compare(ir::Op::kLe, loop.bound, loop.to, now); };
   if (loop.constant_step) {

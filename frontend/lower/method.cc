@@ -89,7 +89,7 @@ Body::Result Body::read_property(ExprId id) {
   if (code.getter == kNoPou) {
     error(DiagnosticCode::kPropertyAccess, expr.name.span,
           quoted_name(expr.name) + " has no GET and cannot be read");
-    return {zero(infer(id).type), temporary_place(infer(id).type)};
+    return {code_.zero(infer(id).type), temporary_place(infer(id).type)};
   }
   Receiver receiver = receiver_of(expr);
   set_line(expr.span);

@@ -36,7 +36,7 @@ bool is_time_like(const ir::TypeTable& types, ir::TypeId type) {
 
 }  // namespace
 
-ir::ValueId Body::number_op(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
+ir::ValueId ValueCode::number_op(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
   return build_.binary(machine_op(op), scalar(type), a, b);
 }
 
@@ -57,7 +57,7 @@ ir::ValueId Body::emit_binary(const Expr& expr, ir::TypeId own) {
   ir::ValueId left = value(expr.operand, own);
   ir::ValueId right = value(expr.right, own);
   set_line({expr.op, expr.op});
-  return number_op(expr.binary, own, left, right);
+  return code_.number_op(expr.binary, own, left, right);
 }
 
 ir::ValueId Body::emit_lazy(const Expr& expr) {
@@ -82,7 +82,7 @@ ir::ValueId Body::emit_lazy(const Expr& expr) {
 
 ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   Note common = ask<OperatorTypes>().unify(infer(left), infer(right), tree_[left].span);
-  if (!common.type.valid()) return zero(elementary(ir::Kind::kBool));
+  if (!common.type.valid()) return code_.zero(elementary(ir::Kind::kBool));
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
   common.type = compared_type(*this, common.type, {left, right});
   ir::ValueId a = value(left, common.type);
@@ -92,10 +92,10 @@ ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   if (types().is_reference(common.type) && equality && known) {  // with NULL
     return build_.compare(op == BinaryOp::kEq ? ir::Op::kEq : ir::Op::kNe, ir::Scalar::kU64, a, b);
   }
-  return compare_scalars(op, common.type, a, b);
+  return code_.compare_scalars(op, common.type, a, b);
 }
 
-ir::ValueId Body::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
+ir::ValueId ValueCode::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
   ir::Scalar machine = scalar(type);
   bool ordered = op != BinaryOp::kEq && op != BinaryOp::kNe;
   if (machine == ir::Scalar::kBool && ordered) {  // FALSE < TRUE
@@ -125,10 +125,10 @@ ir::ValueId Body::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId a, i
 
 ir::ValueId Body::compare_strings(BinaryOp op, ExprId left, ExprId right) {
   ir::Place a = place(left);
-  return compare_places(op, a, place(right));
+  return code_.compare_places(op, a, place(right));
 }
 
-ir::ValueId Body::compare_places(BinaryOp op, const ir::Place& a, const ir::Place& b) {
+ir::ValueId ValueCode::compare_places(BinaryOp op, const ir::Place& a, const ir::Place& b) {
   bool is_wide = wide(a.type);
   ir::ValueId order = native(is_wide ? stdlib::NativeId::kCompareW : stdlib::NativeId::kCompareS,
                              {string_value(a), string_value(b)});
@@ -144,18 +144,18 @@ ir::ValueId Body::emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::Ty
   }
   if (op == BinaryOp::kPower) {
     Typed base = natural(left);
-    return power(base, natural(right), own);
+    return code_.power(base, natural(right), own);
   }
   if (is_time_like(types(), a.type) || is_time_like(types(), b.type)) {
     Typed first = natural(left);
-    return time_arithmetic(op, first, natural(right)).value;
+    return code_.time_arithmetic(op, first, natural(right)).value;
   }
   ir::ValueId x = value(left, own);
   ir::ValueId y = value(right, own);
-  return number_op(op, own, x, y);
+  return code_.number_op(op, own, x, y);
 }
 
-ir::ValueId Body::power(Typed base, Typed exponent, ir::TypeId own) {
+ir::ValueId ValueCode::power(Typed base, Typed exponent, ir::TypeId own) {
   ir::ValueId x = machine_convert(base.value, scalar(base.type), ir::Scalar::kF64);
   ir::ValueId y = machine_convert(exponent.value, scalar(exponent.type), ir::Scalar::kF64);
   ir::ValueId result = native(stdlib::NativeId::kExpt, {x, y});
@@ -163,7 +163,7 @@ ir::ValueId Body::power(Typed base, Typed exponent, ir::TypeId own) {
 }
 
 // All times and dates are nanoseconds in 64 bits; what may be combined was checked.
-Typed Body::time_arithmetic(BinaryOp op, Typed left, Typed right) {
+Typed ValueCode::time_arithmetic(BinaryOp op, Typed left, Typed right) {
   Traits a = traits_of(types(), left.type);
   Traits b = traits_of(types(), right.type);
   if (a.number()) return {scale_time(op, right.value, left), right.type};
@@ -176,7 +176,7 @@ Typed Body::time_arithmetic(BinaryOp op, Typed left, Typed right) {
   return {result, type};
 }
 
-ir::ValueId Body::scale_time(BinaryOp op, ir::ValueId time, Typed factor) {
+ir::ValueId ValueCode::scale_time(BinaryOp op, ir::ValueId time, Typed factor) {
   ir::Scalar machine = scalar(factor.type);
   if (!ir::is_float(machine)) {
     ir::ValueId number = machine_convert(factor.value, machine, ir::Scalar::kI64);

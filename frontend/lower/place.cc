@@ -80,7 +80,7 @@ ir::Place Body::member_variable_place(const Variable& variable) {
 ir::Place Body::place(ExprId id) {
   const Note& note = infer(id);
   if (!note.reference.valid()) return raw_place(id);
-  return target_place(raw_reference(id), note.type);
+  return code_.target_place(raw_reference(id), note.type);
 }
 
 ir::Place Body::raw_place(ExprId id) {
@@ -250,7 +250,7 @@ std::optional<Target> Body::target(ExprId id) {
 ir::ValueId Body::load(const Target& target) {
   ir::ValueId base = load_base(target);
   if (target.bit_size == 0) return base;
-  return part_of(base, base_scalar(target), target.bit_offset, target.bit_size);
+  return code_.part_of(base, base_scalar(target), target.bit_offset, target.bit_size);
 }
 
 ir::Scalar Body::base_scalar(const Target& target) const {
@@ -259,16 +259,16 @@ ir::Scalar Body::base_scalar(const Target& target) const {
 }
 
 ir::ValueId Body::load_base(const Target& target) {
-  if (target.character.valid()) return load_character(target.place, target.character);
+  if (target.character.valid()) return code_.load_character(target.place, target.character);
   if (target.setter != kNoPou) {
     if (target.getter != kNoPou) return get_property(target.getter, target.receiver).value;
-    return zero(target.place.type);
+    return code_.zero(target.place.type);
   }
   return build_.load(target.place, base_scalar(target));
 }
 
 void Body::store_base(const Target& target, ir::ValueId value) {
-  if (target.character.valid()) return store_character(target.place, target.character, value);
+  if (target.character.valid()) return code_.store_character(target.place, target.character, value);
   if (target.setter != kNoPou) return set_property(target, value);
   build_.store(target.place, base_scalar(target), value);
 }

@@ -83,13 +83,13 @@ void PoolCode::call_made(uint32_t method, const ir::Place& at) {
 ir::ValueId PoolCode::make(const Expr& call) {
   const ExprId type = sema_.tree.args[call.list.first].value;
   const Pool* pool = body_.ask<Pools>().of_new(type);
-  if (pool == nullptr) return body_.zero({});
+  if (pool == nullptr) return body_.code_.zero({});
   const Expr& written = sema_.tree[type];
   const Range32 args = written.kind == ExprKind::kCall ? written.list : Range32();
   if (pool->boxed && args.count != 0) {
     body_.error(DiagnosticCode::kBadConstruction, written.span,
                 "`" + std::string(pool->name) + "` has no FB_Init that takes arguments");
-    return body_.zero({});
+    return body_.code_.zero({});
   }
   const ir::Place result = body_.temporary_place(types().elementary(ir::Kind::kLword));
   const ir::BlockId done = build_.new_block();

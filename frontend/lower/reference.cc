@@ -13,7 +13,7 @@ bool is_wide(ir::Scalar scalar) { return ir::scalar_size(scalar) == 8; }
 
 }  // namespace
 
-ir::Place Body::target_place(ir::ValueId handle, ir::TypeId type) const {
+ir::Place ValueCode::target_place(ir::ValueId handle, ir::TypeId type) const {
   ir::Place place;
   place.base = ir::PlaceBase::kTarget;
   place.value = handle;
@@ -26,15 +26,15 @@ ir::Place Body::dereferenced_place(const Expr& expr) {
   const Typed pointer = natural(expr.operand);
   const ir::TypeId target = types()[pointer.type].base;
   set_line(expr.span);
-  if (expr.kind == ExprKind::kDeref) return target_place(pointer.value, target);
+  if (expr.kind == ExprKind::kDeref) return code_.target_place(pointer.value, target);
   const Typed index = natural(tree_.expr_lists[expr.list.first]);
-  return target_place(
-      moved(pointer.value, machine_convert(index.value, scalar(index.type), ir::Scalar::kI64),
-            target),
+  return code_.target_place(
+      code_.moved(pointer.value,
+                  code_.machine_convert(index.value, scalar(index.type), ir::Scalar::kI64), target),
       target);
 }
 
-ir::ValueId Body::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId element) {
+ir::ValueId ValueCode::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId element) {
   const ir::ValueId size =
       machine_convert(build_.size_of(element), ir::Scalar::kU32, ir::Scalar::kI64);
   return build_.move_handle(handle, build_.binary(ir::Op::kMul, ir::Scalar::kI64, count, size));
@@ -72,12 +72,12 @@ ir::Place Body::addressable_place(ExprId id) {
 ir::ValueId Body::handle_of(ExprId id) {
   const Expr& expr = tree_[id];
   const Note& note = infer(id);
-  if (!note.type.valid()) return zero({});
+  if (!note.type.valid()) return code_.zero({});
   if (note.reference.valid()) return raw_reference(id);
   if (expr.kind == ExprKind::kDeref) return natural(expr.operand).value;
   if (is_character(id)) {
     const ir::ValueId string = handle_of(expr.operand);
-    return moved(string, character_position(expr), note.type);
+    return code_.moved(string, character_position(expr), note.type);
   }
   return build_.handle(addressable_place(id));
 }
@@ -93,7 +93,7 @@ ir::ValueId Body::raw_reference(ExprId id) {
 ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
   const Note& note = infer(id);
   const ir::Type& reference = types()[target];
-  if (!note.type.valid()) return zero(target);
+  if (!note.type.valid()) return code_.zero(target);
   const bool zero_literal = note.constant && note.flex == Flex::kInteger &&
                             sema_.options.dialect != Dialect::kIec &&
                             ask<Constants>().fold_integer(id) == 0;
@@ -106,7 +106,7 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
   error(DiagnosticCode::kTypeMismatch, tree_[id].span,
         "`" + sema_.report.type_text(target) + "` cannot refer to a `" +
             sema_.report.type_text(note.type) + "`");
-  return zero(target);
+  return code_.zero(target);
 }
 
 // An instance where a variable of an interface is wanted.
@@ -117,7 +117,7 @@ ir::ValueId Body::interface_value(ExprId id, ir::TypeId target) {
         "`" + sema_.report.type_text(type) + "` does not implement `" +
             sema_.report.type_text(target) + "`",
         "declare it with IMPLEMENTS " + sema_.report.type_text(target));
-  return zero(target);
+  return code_.zero(target);
 }
 
 // r REF= x
@@ -142,12 +142,12 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
       return PoolCode(*this).make(expr);
     case ReferenceCall::kDelete:
       PoolCode(*this).destroy(expr);
-      return zero(own);
+      return code_.zero(own);
     case ReferenceCall::kQuery:
       return attempt(tree_.args[expr.list.first + 1].value, argument, expr.span).fits;
     case ReferenceCall::kSizeof:
-      return machine_convert(build_.size_of(ask<Calls>().type_of_argument(argument)),
-                             ir::Scalar::kU32, scalar(own));
+      return code_.machine_convert(build_.size_of(ask<Calls>().type_of_argument(argument)),
+                                   ir::Scalar::kU32, scalar(own));
     case ReferenceCall::kIsValid: {
       const bool raw = infer(argument).reference.valid();
       const ir::ValueId handle = raw ? raw_reference(argument) : natural(argument).value;
@@ -172,7 +172,7 @@ ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right
                           build_.binary(ir::Op::kSub, ir::Scalar::kU32, a, b));
     }
     const ir::ValueId a = value(left, dword);
-    return number_op(op, dword, a, value(right, dword));
+    return code_.number_op(op, dword, a, value(right, dword));
   }
   const MovedPointer sum = moved_pointer(op, left, right);
   return build_.move_handle(sum.handle, sum.bytes);
@@ -188,7 +188,7 @@ MovedPointer Body::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
   number = natural(first ? right : left);
   if (!first) sum = pointer_of_sum(right);
   const ir::Scalar i64 = ir::Scalar::kI64;
-  const ir::ValueId bytes = machine_convert(number.value, scalar(number.type), i64);
+  const ir::ValueId bytes = code_.machine_convert(number.value, scalar(number.type), i64);
   if (sum.bytes.valid()) {
     sum.bytes =
         build_.binary(op == BinaryOp::kSub ? ir::Op::kSub : ir::Op::kAdd, i64, sum.bytes, bytes);
@@ -221,31 +221,31 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
     const Traits traits = traits_of(types(), to);
     const uint32_t bytes = traits.integer || traits.bits ? ir::scalar_size(scalar(to)) : 0;
     if (codesys && bytes == 8) {
-      return machine_convert(compared_place(build_, from.value, false), ir::Scalar::kU64,
-                             scalar(to));
+      return code_.machine_convert(compared_place(build_, from.value, false), ir::Scalar::kU64,
+                                   scalar(to));
     }
     if (codesys && bytes == 4) {
-      return machine_convert(build_.flat(from.value), ir::Scalar::kU32, scalar(to));
+      return code_.machine_convert(build_.flat(from.value), ir::Scalar::kU32, scalar(to));
     }
     if (codesys && bytes != 0) {
       error(DiagnosticCode::kBadReference, span,
             "an address does not fit into `" + sema_.report.type_text(to) + "`",
             "use DWORD or LWORD");
-      return zero(to);
+      return code_.zero(to);
     }
   } else {
     const Traits traits = traits_of(types(), from.type);
     if (codesys && (traits.integer || traits.bits)) {
       if (is_wide(scalar(from.type))) {
-        return machine_convert(from.value, scalar(from.type), ir::Scalar::kU64);
+        return code_.machine_convert(from.value, scalar(from.type), ir::Scalar::kU64);
       }
-      return build_.unflat(machine_convert(from.value, scalar(from.type), ir::Scalar::kU32));
+      return build_.unflat(code_.machine_convert(from.value, scalar(from.type), ir::Scalar::kU32));
     }
   }
   error(DiagnosticCode::kTypeMismatch, span,
         "`" + sema_.report.type_text(from.type) + "` does not go with `" +
             sema_.report.type_text(to) + "`");
-  return zero(to);
+  return code_.zero(to);
 }
 
 // A constant where a pointer is wanted: NULL, 0, or an address.

@@ -81,7 +81,7 @@ ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::Type
       return build_.unary(ir::Op::kNot, scalar(own), value(args[0], own));
     case FunctionRule::kTrunc: {
       Typed real = natural(args[0]);
-      return machine_convert(real.value, scalar(real.type), scalar(own), true);
+      return code_.machine_convert(real.value, scalar(real.type), scalar(own), true);
     }
     case FunctionRule::kReal:
       return real_function(args, row, own);
@@ -109,7 +109,7 @@ ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::Type
     case FunctionRule::kSplit:
       break;
   }
-  return zero(own);
+  return code_.zero(own);
 }
 
 ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
@@ -120,9 +120,10 @@ ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::F
   }
   ir::ValueList operands;
   for (ExprId arg : args) {
-    operands.push_back(machine_convert(value(arg, own), machine, ir::Scalar::kF64));
+    operands.push_back(code_.machine_convert(value(arg, own), machine, ir::Scalar::kF64));
   }
-  return machine_convert(native(real_native(row.id), operands), ir::Scalar::kF64, machine);
+  return code_.machine_convert(code_.native(real_native(row.id), operands), ir::Scalar::kF64,
+                               machine);
 }
 
 // ADD(a, b, c) is a + b + c.
@@ -141,12 +142,12 @@ ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir
   Traits traits = traits_of(types(), own);
   if (traits.duration || traits.date) {
     Typed sum = natural(args[0]);
-    for (size_t i = 1; i < args.size(); ++i) sum = time_arithmetic(op, sum, natural(args[i]));
+    for (size_t i = 1; i < args.size(); ++i) sum = code_.time_arithmetic(op, sum, natural(args[i]));
     return sum.value;
   }
   ir::ValueId result = operand(args[0]);
   for (size_t i = 1; i < args.size(); ++i) {
-    result = number_op(op, own, result, operand(args[i]));
+    result = code_.number_op(op, own, result, operand(args[i]));
   }
   return result;
 }
@@ -159,16 +160,16 @@ ir::ValueId Body::shift(const std::vector<ExprId>& args, const stdlib::FunctionR
   ir::Scalar machine = scalar(count.type);
   ir::ValueId number = count.value;
   if (ir::scalar_size(machine) == 8 && row.id != FunctionId::kRol && row.id != FunctionId::kRor) {
-    number = machine_convert(number, machine, ir::Scalar::kU64);
+    number = code_.machine_convert(number, machine, ir::Scalar::kU64);
     number = build_.binary(ir::Op::kMin, ir::Scalar::kU64, number,
                            build_.constant(ir::Scalar::kU64, 64));
     machine = ir::Scalar::kU64;
   }
-  number = machine_convert(number, machine, ir::Scalar::kU32);
+  number = code_.machine_convert(number, machine, ir::Scalar::kU32);
   return build_.binary(shift_op(row.id), scalar(own), in, number);
 }
 
-ir::ValueId Body::extreme_of(bool largest, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
+ir::ValueId ValueCode::extreme_of(bool largest, ir::TypeId type, ir::ValueId a, ir::ValueId b) {
   ir::Scalar machine = scalar(type);
   if (machine == ir::Scalar::kBool) {
     return build_.binary(largest ? ir::Op::kOr : ir::Op::kAnd, machine, a, b);
@@ -182,11 +183,11 @@ ir::ValueId Body::extreme(const std::vector<ExprId>& args, const stdlib::Functio
     ir::ValueId low = value(args[0], own);
     ir::ValueId in = value(args[1], own);
     ir::ValueId high = value(args[2], own);
-    return extreme_of(false, own, extreme_of(true, own, in, low), high);
+    return code_.extreme_of(false, own, code_.extreme_of(true, own, in, low), high);
   }
   ir::ValueId result = value(args[0], own);
   for (size_t i = 1; i < args.size(); ++i) {
-    result = extreme_of(row.id == FunctionId::kMax, own, result, value(args[i], own));
+    result = code_.extreme_of(row.id == FunctionId::kMax, own, result, value(args[i], own));
   }
   return result;
 }
@@ -195,7 +196,7 @@ ir::ValueId Body::extreme(const std::vector<ExprId>& args, const stdlib::Functio
 ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
   Typed selector = natural(args[0]);
   ir::ValueId wide_selector =
-      machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
+      code_.machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
   ir::ValueId result = value(args[1], own);
   for (size_t i = 2; i < args.size(); ++i) {
     ir::ValueId next = value(args[i], own);
@@ -208,7 +209,7 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 
 // Every argument is evaluated once; each is compared with the next.
 ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common) {
-  if (!common.valid()) return zero(elementary(ir::Kind::kBool));
+  if (!common.valid()) return code_.zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
   common = compared_type(*this, common, args);
   ir::ValueList values;
@@ -222,8 +223,8 @@ ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir
   }
   ir::ValueId all;
   for (size_t i = 0; i + 1 < args.size(); ++i) {
-    ir::ValueId next = text ? compare_places(op, places[i], places[i + 1])
-                            : compare_scalars(op, common, values[i], values[i + 1]);
+    ir::ValueId next = text ? code_.compare_places(op, places[i], places[i + 1])
+                            : code_.compare_scalars(op, common, values[i], values[i + 1]);
     all = i == 0 ? next : build_.binary(ir::Op::kAnd, ir::Scalar::kBool, all, next);
   }
   return all;

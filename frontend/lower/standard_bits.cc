@@ -25,9 +25,9 @@ ir::ValueId Body::byte_order(ExprId argument, const stdlib::FunctionRow& row, ir
   if (!swaps || bytes == 1) return in;
   ir::Scalar plain = bits_of_float(machine);
   if (plain != machine) in = build_.unary(ir::Op::kBits, plain, in);
-  ir::ValueId bits = machine_convert(in, plain, ir::Scalar::kU64);
-  bits = native(NativeId::kSwapBytes, {bits, build_.constant(ir::Scalar::kI32, bytes)});
-  bits = machine_convert(bits, ir::Scalar::kU64, plain);
+  ir::ValueId bits = code_.machine_convert(in, plain, ir::Scalar::kU64);
+  bits = code_.native(NativeId::kSwapBytes, {bits, build_.constant(ir::Scalar::kI32, bytes)});
+  bits = code_.machine_convert(bits, ir::Scalar::kU64, plain);
   return plain != machine ? build_.unary(ir::Op::kBits, machine, bits) : bits;
 }
 
@@ -39,8 +39,8 @@ ir::ValueId Body::is_valid(ExprId argument, const stdlib::FunctionRow& row) {
     ir::ValueId nothing = build_.binary(ir::Op::kSub, machine, in.value, in.value);
     return build_.compare(ir::Op::kEq, machine, nothing, build_.constant(machine, 0));
   }
-  ir::ValueId bits = machine_convert(in.value, machine, ir::Scalar::kU64);
-  ir::ValueId number = native(NativeId::kBcdToNumber, {bits});
+  ir::ValueId bits = code_.machine_convert(in.value, machine, ir::Scalar::kU64);
+  ir::ValueId number = code_.native(NativeId::kBcdToNumber, {bits});
   ir::ValueId bad = build_.constant(ir::Scalar::kU64, std::numeric_limits<uint64_t>::max());
   return build_.compare(ir::Op::kNe, ir::Scalar::kU64, number, bad);
 }

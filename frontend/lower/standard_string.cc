@@ -63,10 +63,10 @@ ir::ValueId Body::string_number(const std::vector<ExprId>& args, const stdlib::F
   for (ExprId arg : args) {
     ir::Place text = place(arg);
     is_wide = wide(text.type);
-    operands.push_back(string_value(text));
+    operands.push_back(code_.string_value(text));
   }
-  ir::ValueId count = native(string_native(row.id, is_wide), operands);
-  return machine_convert(count, ir::Scalar::kI32, ir::Scalar::kI16);
+  ir::ValueId count = code_.native(string_native(row.id, is_wide), operands);
+  return code_.machine_convert(count, ir::Scalar::kI32, ir::Scalar::kI16);
 }
 
 // The result lies in a temporary of its own, so it never overlaps a source.
@@ -76,23 +76,24 @@ ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::F
   if (row.id == FunctionId::kConcat) return concat(args, type, is_wide);
   ir::Place result = temporary_place(type);
   uint32_t strings = string_arguments(row, static_cast<uint32_t>(args.size()));
-  ir::ValueList operands{string_value(result)};
+  ir::ValueList operands{code_.string_value(result)};
   for (uint32_t i = 0; i < args.size(); ++i) {
     if (i < strings) {
-      operands.push_back(string_value(place(args[i])));
+      operands.push_back(code_.string_value(place(args[i])));
     } else {
       Typed number = natural(args[i]);
-      operands.push_back(machine_convert(number.value, scalar(number.type), ir::Scalar::kI64));
+      operands.push_back(
+          code_.machine_convert(number.value, scalar(number.type), ir::Scalar::kI64));
     }
   }
   bool strict = sema_.options.strict_strings && !info_.library;
   if (strict || (!tries_.empty() && tries_.back().eno)) {
     constexpr ir::Scalar kI64 = ir::Scalar::kI64;
-    ir::ValueId length = native(string_native(FunctionId::kLen, is_wide), {operands[1]});
-    length = machine_convert(length, ir::Scalar::kI32, kI64);
-    require(in_range(build_, row.id, length, operands), ir::TrapKind::kString);
+    ir::ValueId length = code_.native(string_native(FunctionId::kLen, is_wide), {operands[1]});
+    length = code_.machine_convert(length, ir::Scalar::kI32, kI64);
+    code_.require(in_range(build_, row.id, length, operands), ir::TrapKind::kString);
   }
-  native(string_native(row.id, is_wide), operands);
+  code_.native(string_native(row.id, is_wide), operands);
   return result;
 }
 
@@ -102,7 +103,8 @@ ir::Place Body::concat(const std::vector<ExprId>& args, ir::TypeId type, bool is
   for (size_t i = 1; i < args.size(); ++i) {
     ir::Place next = place(args[i]);
     ir::Place result = temporary_place(type);
-    native(id, {string_value(result), string_value(sum), string_value(next)});
+    code_.native(id,
+                 {code_.string_value(result), code_.string_value(sum), code_.string_value(next)});
     sum = result;
   }
   return sum;
@@ -122,7 +124,7 @@ ir::Place Body::extreme_string(const std::vector<ExprId>& args, const stdlib::Fu
     BinaryOp better = largest ? BinaryOp::kGt : BinaryOp::kLt;
     ir::BlockId take = build_.new_block();
     ir::BlockId next = build_.new_block();
-    build_.branch(compare_places(better, places[i], result), take, next);
+    build_.branch(code_.compare_places(better, places[i], result), take, next);
     build_.start(take);
     build_.copy(result, places[i]);
     build_.jump(next);
@@ -139,7 +141,8 @@ ir::Place Body::choose(const std::vector<ExprId>& args, const stdlib::FunctionRo
   Typed selector =
       select ? Typed{value(args[0], elementary(ir::Kind::kBool)), elementary(ir::Kind::kBool)}
              : natural(args[0]);
-  ir::ValueId number = machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
+  ir::ValueId number =
+      code_.machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
   std::vector<ir::Place> choices;
   for (size_t i = 1; i < args.size(); ++i) choices.push_back(place(args[i]));
   build_.copy(result, choices[0]);

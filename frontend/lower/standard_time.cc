@@ -43,7 +43,7 @@ ir::ValueId Body::time_function(const std::vector<ExprId>& args, const stdlib::F
     operands[i] =
         kind ? Typed{value(args[i], elementary(*kind)), elementary(*kind)} : natural(args[i]);
   }
-  return time_arithmetic(time_operator(row.rule), operands[0], operands[1]).value;
+  return code_.time_arithmetic(time_operator(row.rule), operands[0], operands[1]).value;
 }
 
 // A date alone is midnight, a time of day alone is on 1970-01-01.
@@ -53,7 +53,7 @@ ir::ValueId Body::moment(const std::vector<ExprId>& args, const stdlib::Function
   ir::ValueList given;
   for (ExprId arg : args) {
     Typed part = natural(arg);
-    given.push_back(machine_convert(part.value, scalar(part.type), kI64));
+    given.push_back(code_.machine_convert(part.value, scalar(part.type), kI64));
   }
   ir::ValueList parts;
   for (uint32_t i = 0; i < kParts; ++i) {
@@ -61,20 +61,20 @@ ir::ValueId Body::moment(const std::vector<ExprId>& args, const stdlib::Function
     bool is_given = i >= first && i - first < given.size();
     parts.push_back(is_given ? given[i - first] : build_.constant(kI64, kEpoch[i]));
   }
-  ir::ValueId ns = native(NativeId::kMoment, parts);
+  ir::ValueId ns = code_.native(NativeId::kMoment, parts);
   auto none = static_cast<uint64_t>(std::numeric_limits<int64_t>::min());
-  require(build_.compare(ir::Op::kNe, kI64, ns, build_.constant(kI64, none)));
+  code_.require(build_.compare(ir::Op::kNe, kI64, ns, build_.constant(kI64, none)));
   return ns;
 }
 
-ir::ValueId Body::moment_part(ir::ValueId ns, uint32_t part) {
+ir::ValueId ValueCode::moment_part(ir::ValueId ns, uint32_t part) {
   return native(NativeId::kMomentPart, {ns, build_.constant(ir::Scalar::kI32, part)});
 }
 
 ir::ValueId Body::day_of_week(ExprId moment) {
   constexpr uint32_t kDayOfWeek = 7;
-  ir::ValueId day = moment_part(natural(moment).value, kDayOfWeek);
-  return machine_convert(day, ir::Scalar::kI32, ir::Scalar::kI16);
+  ir::ValueId day = code_.moment_part(natural(moment).value, kDayOfWeek);
+  return code_.machine_convert(day, ir::Scalar::kI32, ir::Scalar::kI16);
 }
 
 // SPLIT_DATE(IN := d, YEAR => y, ...): a statement.
@@ -96,8 +96,9 @@ void Body::split(const Expr& call, const stdlib::FunctionRow& row) {
             "use a variable of type INT or UINT");
       continue;
     }
-    ir::ValueId number = machine_convert(moment_part(ns, part), ir::Scalar::kI32, scalar(type));
-    store(*targets[i], check_range(number, without_range(types(), type), type));
+    ir::ValueId number =
+        code_.machine_convert(code_.moment_part(ns, part), ir::Scalar::kI32, scalar(type));
+    store(*targets[i], code_.check_range(number, without_range(types(), type), type));
   }
 }
 

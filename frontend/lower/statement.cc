@@ -66,7 +66,7 @@ ir::ValueId Body::condition(ExprId expr) {
   if (note.type.valid() && !traits_of(types(), note.type).boolean) {
     error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
           "the condition is `" + sema_.report.type_text(note.type) + "`", "compare it: `x <> 0`");
-    return zero(elementary(ir::Kind::kBool));
+    return code_.zero(elementary(ir::Kind::kBool));
   }
   return value(expr, elementary(ir::Kind::kBool));
 }

@@ -73,7 +73,7 @@ bool is_character_kind(ir::Kind kind) { return ir::elementary_group(kind) == ir:
 ir::Place Body::narrow_string(ir::Place source, bool is_wide) {
   if (!is_wide) return source;
   ir::Place out = temporary_place(sema_.program.types.string(types()[source.type].capacity));
-  native(NativeId::kWstringToString, {string_value(out), string_value(source)});
+  code_.native(NativeId::kWstringToString, {code_.string_value(out), code_.string_value(source)});
   return out;
 }
 
@@ -87,13 +87,14 @@ ir::Place Body::to_string(const Expr& call, const Conversion& conversion, ir::Ty
   Typed source{value(argument, from), from};
   ir::Place out = temporary_place(type);
   if (wide(type) && is_character_kind(types().root_kind(from))) {
-    ir::ValueId code = machine_convert(source.value, scalar(from), ir::Scalar::kU64);
-    native(NativeId::kCharToWstring, {string_value(out), code});
+    ir::ValueId code = code_.machine_convert(source.value, scalar(from), ir::Scalar::kU64);
+    code_.native(NativeId::kCharToWstring, {code_.string_value(out), code});
     return out;
   }
   ir::Place text = wide(type) ? temporary_place(sema_.program.types.string(kNumberText)) : out;
   write_text(text, source);
-  if (wide(type)) native(NativeId::kStringToWstring, {string_value(out), string_value(text)});
+  if (wide(type))
+    code_.native(NativeId::kStringToWstring, {code_.string_value(out), code_.string_value(text)});
   return out;
 }
 
@@ -102,7 +103,7 @@ ir::Place Body::string_to_string(ExprId source, ir::TypeId type) {
   if (wide(text.type) == wide(type)) return text;
   if (!wide(type)) return narrow_string(text, true);
   ir::Place out = temporary_place(type);
-  native(NativeId::kStringToWstring, {string_value(out), string_value(text)});
+  code_.native(NativeId::kStringToWstring, {code_.string_value(out), code_.string_value(text)});
   return out;
 }
 
@@ -112,21 +113,21 @@ void Body::write_text(const ir::Place& text, Typed source) {
   }
   ir::Kind kind = types().root_kind(source.type);
   TextForm form = text_form(kind, scalar(source.type));
-  ir::ValueId number = machine_convert(source.value, scalar(source.type), form.machine);
+  ir::ValueId number = code_.machine_convert(source.value, scalar(source.type), form.machine);
   if (!form.has_long_form) {
-    native(form.native, {string_value(text), number});
+    code_.native(form.native, {code_.string_value(text), number});
     return;
   }
   ir::ValueId is_long = build_.constant(ir::Scalar::kBool, is_long_time(kind) ? 1 : 0);
-  native(form.native, {string_value(text), number, is_long});
+  code_.native(form.native, {code_.string_value(text), number, is_long});
 }
 
 // The number first; a literal of that value replaces it.
 void Body::write_enumerator_name(const ir::Place& text, Typed source) {
   ir::Scalar machine = scalar(source.type);
   ir::TypeId type = without_range(types(), source.type);
-  ir::ValueId number = machine_convert(source.value, machine, ir::Scalar::kI64);
-  native(NativeId::kI64ToString, {string_value(text), number});
+  ir::ValueId number = code_.machine_convert(source.value, machine, ir::Scalar::kI64);
+  code_.native(NativeId::kI64ToString, {code_.string_value(text), number});
   const std::vector<ir::EnumLiteral> literals = types()[type].literals;
   for (const ir::EnumLiteral& literal : literals) {
     ir::BlockId take = build_.new_block();
@@ -152,25 +153,25 @@ ir::ValueId Body::from_string(ExprId source, ir::TypeId to) {
   if (is_character_kind(kind)) return character_of(text, to);
   text = narrow_string(text, wide(text.type));
   TextForm form = value_form(kind, scalar(to));
-  ir::ValueList operands{string_value(text)};
+  ir::ValueList operands{code_.string_value(text)};
   if (form.native == NativeId::kStringToDate) {
     operands.push_back(build_.constant(ir::Scalar::kI32, static_cast<uint64_t>(kind)));
   }
-  ir::ValueId result = native(form.native, operands);
-  return clamp(result, form.machine, scalar(to));
+  ir::ValueId result = code_.native(form.native, operands);
+  return code_.clamp(result, form.machine, scalar(to));
 }
 
 ir::ValueId Body::character_of(const ir::Place& text, ir::TypeId to) {
   if (!wide(text.type) || types().root_kind(to) == ir::Kind::kChar) {
     ir::Place narrow = narrow_string(text, wide(text.type));
-    ir::ValueId code = native(NativeId::kStringToChar, {string_value(narrow)});
-    return machine_convert(code, ir::Scalar::kI32, scalar(to));
+    ir::ValueId code = code_.native(NativeId::kStringToChar, {code_.string_value(narrow)});
+    return code_.machine_convert(code, ir::Scalar::kI32, scalar(to));
   }
-  ir::ValueId code = native(NativeId::kWstringToChar, {string_value(text)});
-  return machine_convert(code, ir::Scalar::kI32, scalar(to));
+  ir::ValueId code = code_.native(NativeId::kWstringToChar, {code_.string_value(text)});
+  return code_.machine_convert(code, ir::Scalar::kI32, scalar(to));
 }
 
-ir::ValueId Body::clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow) {
+ir::ValueId ValueCode::clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow) {
   if (ir::is_integer(wide) && ir::scalar_size(narrow) < ir::scalar_size(wide)) {
     Limits limits = limits_of(narrow);
     ir::ValueId most = build_.constant(wide, static_cast<uint64_t>(limits.high));
@@ -182,7 +183,7 @@ ir::ValueId Body::clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow) 
 }
 
 // Result and arguments are typed by the row in natives.def.
-ir::ValueId Body::native(stdlib::NativeId id, ir::ValueList operands) {
+ir::ValueId ValueCode::native(stdlib::NativeId id, ir::ValueList operands) {
   uint32_t number = static_cast<uint32_t>(id);
   char result = stdlib::native_row(number).result;
   if (result == 'v') {

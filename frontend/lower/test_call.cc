@@ -130,7 +130,7 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
     const ir::Place b = place(args[1]);
     actual = [this, a] { return narrow_string(a, wide(a.type)); };
     expected = [this, b] { return narrow_string(b, wide(b.type)); };
-    holds = compare_places(relation.op, a, b);
+    holds = code_.compare_places(relation.op, a, b);
   } else if (!types().is_scalar(common.type)) {
     error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
           "`" + sema_.report.type_text(common.type) + "` cannot be compared as a whole",
@@ -142,7 +142,7 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
     const Typed b{value(args[1], type), type};
     actual = [this, a] { return text_of(a); };
     expected = [this, b] { return text_of(b); };
-    holds = compare_scalars(relation.op, type, a.value, b.value);
+    holds = code_.compare_scalars(relation.op, type, a.value, b.value);
   }
   fail_unless(holds, message, [&] {
     ir::Place text = joined(constant_text(std::string("expected ") + relation.wanted), expected());
@@ -230,7 +230,8 @@ ir::Place Body::joined(const ir::Place& first, const ir::Place& second) {
   size_t free = 0;
   while (holds(first, message_buffers_[free]) || holds(second, message_buffers_[free])) ++free;
   const ir::Place out = local_place(message_buffers_[free]);
-  native(NativeId::kConcatS, {string_value(out), string_value(first), string_value(second)});
+  code_.native(NativeId::kConcatS,
+               {code_.string_value(out), code_.string_value(first), code_.string_value(second)});
   return out;
 }
 

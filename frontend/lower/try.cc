@@ -135,7 +135,7 @@ void Body::catch_variable(const Stmt& stmt) {
           "declare it as ExceptionCode or as an integer");
     return;
   }
-  store(*variable, machine_convert(kind, kU32, scalar(variable->type)));
+  store(*variable, code_.machine_convert(kind, kU32, scalar(variable->type)));
 }
 
 }  // namespace frontend

@@ -23,7 +23,7 @@ std::optional<ir::ValueId> Body::object_handle(ExprId id) {
 
 // Binds the variable `left` to the instance when its type allows; whether it does.
 Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
-  Attempt result{zero(elementary(ir::Kind::kBool)), build_.constant(ir::Scalar::kU64, 0)};
+  Attempt result{code_.zero(elementary(ir::Kind::kBool)), build_.constant(ir::Scalar::kU64, 0)};
   const Note note = infer(left);
   if (!note.type.valid()) {
     infer(right);

@@ -72,7 +72,7 @@ bool Body::is_distance(ExprId id) {
 ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   const Note& note = infer(id);
   const Expr& expr = tree_[id];
-  if (!note.type.valid() || !target.valid()) return zero(target);
+  if (!note.type.valid() || !target.valid()) return code_.zero(target);
   if (types()[target].kind == ir::Kind::kReferenceTo) return reference_value(id, target);
   if (note.constant && types().is_reference(target)) return constant_reference(id);
   if (is_interface(types(), target) && types().is_instance(note.type)) {
@@ -82,14 +82,14 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
     auto bits =
         ask<Constants>().fold_bits(id, target, evaluating_ ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
-    return bits ? build_.constant(scalar(target), *bits) : zero(target);
+    return bits ? build_.constant(scalar(target), *bits) : code_.zero(target);
   }
   ir::TypeId own = own_type(note, target);
   if (!types().is_scalar(own)) {
     error(DiagnosticCode::kTypeMismatch, expr.span,
           "`" + sema_.report.type_text(own) + "` does not go with `" +
               sema_.report.type_text(target) + "`");
-    return zero(target);
+    return code_.zero(target);
   }
   warn_of_half_times(*this, note.type, target, expr.span);
   if (note.width == Width::kWide && !types().is_reference(target)) return stored(id, target);
@@ -107,7 +107,7 @@ Typed Body::natural(ExprId id) {
   const Note& note = infer(id);
   ir::TypeId type = without_range(types(), note.type);
   if (!type.valid() || !types().is_scalar(type)) {
-    return {zero({}), elementary(ir::Kind::kDint)};
+    return {code_.zero({}), elementary(ir::Kind::kDint)};
   }
   if (note.width == Width::kWide) {
     const ir::TypeId dint = elementary(ir::Kind::kDint);
@@ -145,7 +145,7 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
     case ExprKind::kResult:
       return emit_result(id);
     default:
-      return zero(own);
+      return code_.zero(own);
   }
 }
 
@@ -154,18 +154,19 @@ ir::ValueId Body::emit_bit(ExprId id) {
   uint32_t offset = part.bit_number * part.bit_size;
   if (part.view) {
     ir::Place byte = view_place(id);
-    return part_of(build_.load(byte, scalar(byte.type)), scalar(byte.type), offset, 1);
+    return code_.part_of(build_.load(byte, scalar(byte.type)), scalar(byte.type), offset, 1);
   }
   if (part.bit_member >= 0) {
     ir::Place word = bit_word_place(tree_[id].operand, part);
     ir::ValueId bits = build_.load(word, scalar(word.type));
-    return part_of(bits, scalar(word.type), offset, 1);
+    return code_.part_of(bits, scalar(word.type), offset, 1);
   }
   Typed word = natural(tree_[id].operand);
-  return part_of(word.value, scalar(word.type), offset, part.bit_size);
+  return code_.part_of(word.value, scalar(word.type), offset, part.bit_size);
 }
 
-ir::ValueId Body::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset, uint32_t size) {
+ir::ValueId ValueCode::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset,
+                               uint32_t size) {
   ir::ValueId bits = word;
   if (offset != 0) {
     bits = build_.binary(ir::Op::kShr, machine, bits, build_.constant(ir::Scalar::kU32, offset));
@@ -173,7 +174,7 @@ ir::ValueId Body::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset,
   if (size != 1) {
     ir::DirectAddress part;
     part.bit_size = size;
-    return machine_convert(bits, machine, scalar(ask<Variables>().type_of_direct(part)));
+    return machine_convert(bits, machine, scalar(type_of_direct(types_, part)));
   }
   bits = build_.binary(ir::Op::kAnd, machine, bits, build_.constant(machine, 1));
   return build_.unary(ir::Op::kToBool, ir::Scalar::kBool, bits);
@@ -187,7 +188,7 @@ ir::ValueId Body::emit_unary(const Expr& expr, ir::TypeId own) {
                       operand);
 }
 
-ir::ValueId Body::string_value(const ir::Place& place) {
+ir::ValueId ValueCode::string_value(const ir::Place& place) {
   return build_.string(place, wide(place.type));
 }
 

@@ -32,7 +32,7 @@ bool divides_in(const Phase& phase, const Expr& expr, ir::TypeId type, ir::Scala
 ir::ValueId Body::stored(ExprId sum, ir::TypeId target) {
   const Note& note = infer(sum);
   const base::SourceSpan span = tree_[sum].span;
-  if (!fits(note.type, target, span)) return zero(target);
+  if (!fits(note.type, target, span)) return code_.zero(target);
   const Traits to = traits_of(types(), target);
   const bool range = types()[target].kind == ir::Kind::kSubrange;
   const Expr& expr = tree_[sum];
@@ -43,14 +43,15 @@ ir::ValueId Body::stored(ExprId sum, ir::TypeId target) {
   const ir::TypeId dint = elementary(ir::Kind::kDint);
   const ir::TypeId type = low_bits ? target : dint;
   const ir::ValueId value = computed_in(sum, type);
-  if (!range) return machine_convert(value, scalar(type), scalar(target));
+  if (!range) return code_.machine_convert(value, scalar(type), scalar(target));
   const ir::Type& limits = types()[target];
   const Limits whole = limits_of(ir::Scalar::kI32);
   if (limits.low >= whole.low && limits.high <= whole.high) {  // before anything is cut off
     const ir::ValueId good = build_.check_range(ir::Scalar::kI32, value, limits.low, limits.high);
-    return machine_convert(good, ir::Scalar::kI32, scalar(target));
+    return code_.machine_convert(good, ir::Scalar::kI32, scalar(target));
   }
-  return check_range(machine_convert(value, ir::Scalar::kI32, scalar(target)), dint, target);
+  return code_.check_range(code_.machine_convert(value, ir::Scalar::kI32, scalar(target)), dint,
+                           target);
 }
 
 // An operand, or a tree of operators, in `type`: nobody wants other bits than the low ones of that.
@@ -67,7 +68,7 @@ ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
   }
   if (note.width != Width::kWide) {
     const Typed own = natural(id);
-    return machine_convert(own.value, scalar(own.type), machine);
+    return code_.machine_convert(own.value, scalar(own.type), machine);
   }
   set_line(expr.span);
   if (expr.kind == ExprKind::kUnary) {
@@ -79,18 +80,18 @@ ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
   }
   const ir::TypeId dint = elementary(ir::Kind::kDint);
   if (expr.kind != ExprKind::kBinary) {  // ADD(a, b)
-    return machine_convert(emit(id, dint), ir::Scalar::kI32, machine);
+    return code_.machine_convert(emit(id, dint), ir::Scalar::kI32, machine);
   }
   // Quotients need all bits of what is divided.
   const bool exact = divides(expr.binary) && machine != ir::Scalar::kI32;
   if (exact && !divides_in(*this, expr, note.type, machine)) {
-    return machine_convert(computed_in(id, dint), ir::Scalar::kI32, machine);
+    return code_.machine_convert(computed_in(id, dint), ir::Scalar::kI32, machine);
   }
   const ir::TypeId in = exact ? without_range(types(), note.type) : type;
   const ir::ValueId left = computed_in(expr.operand, in);
   const ir::ValueId right = computed_in(expr.right, in);
   if (operator_class(expr.binary) == OperatorClass::kLogical) set_line({expr.op, expr.op});
-  return machine_convert(number_op(expr.binary, in, left, right), scalar(in), machine);
+  return code_.machine_convert(code_.number_op(expr.binary, in, left, right), scalar(in), machine);
 }
 
 }  // namespace frontend

@@ -116,19 +116,23 @@ bool Variables::holds_input(ir::TypeId type) const {
   });
 }
 
-ir::TypeId Variables::type_of_direct(const ir::DirectAddress& address) const {
+ir::TypeId type_of_direct(const ir::TypeTable& types, const ir::DirectAddress& address) {
   switch (address.bit_size) {
     case 1:
-      return sema_.program.types.elementary(ir::Kind::kBool);
+      return types.elementary(ir::Kind::kBool);
     case 8:
-      return sema_.program.types.elementary(ir::Kind::kByte);
+      return types.elementary(ir::Kind::kByte);
     case 16:
-      return sema_.program.types.elementary(ir::Kind::kWord);
+      return types.elementary(ir::Kind::kWord);
     case 32:
-      return sema_.program.types.elementary(ir::Kind::kDword);
+      return types.elementary(ir::Kind::kDword);
     default:
-      return sema_.program.types.elementary(ir::Kind::kLword);
+      return types.elementary(ir::Kind::kLword);
   }
+}
+
+ir::TypeId Variables::type_of_direct(const ir::DirectAddress& address) const {
+  return frontend::type_of_direct(sema_.program.types, address);
 }
 
 // A bare %QX0.0 in code is a global variable of that name, one per address. A

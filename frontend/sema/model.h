@@ -98,6 +98,8 @@ struct Located {
 // located.cc: does a TEST stand there? No name begins as an address_key() does.
 bool is_in_test(const Tree& tree, base::SourcePos at);
 std::string address_key(const ir::DirectAddress& address, ir::TypeId type);
+// BOOL for %X, BYTE for %B and so on.
+ir::TypeId type_of_direct(const ir::TypeTable& types, const ir::DirectAddress& address);
 
 // What is known of addresses beside the variables that have them.
 struct Addresses {
