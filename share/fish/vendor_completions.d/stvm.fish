@@ -170,6 +170,7 @@ complete -c stvm -n '__fish_seen_subcommand_from edits' -l color -x -a 'auto alw
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l only -d 'take back this edit alone: those that were made later stay'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l allow-loss -d 'with --only: even if live values are lost, as the report says'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l allow-overrun -d 'with --only: even if a task may be delayed'
+complete -c stvm -n '__fish_seen_subcommand_from undo' -l skip-exit -d 'do not run FB_Exit of what goes: one that traps keeps the edit'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l yes -s y -d 'go on without asking'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l dry-run -d 'say what would happen, or why it would be refused; nothing is changed'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l dir -x -a '(__fish_complete_directories)' -d 'state directory of the controller (default: $STVM_DIR, else .stvm)'
