@@ -8,6 +8,7 @@ base::Error gone() { return {base::Refusal::kNotRunning, "the connection is lost
 }  // namespace
 
 void FaultyTransport::arm(Fault fault, uint32_t exchanges, uint64_t seed) {
+  armed_ = true;
   fault_ = fault;
   exchanges_ = exchanges;
   seed_ = seed;

@@ -25,6 +25,8 @@ class FaultyTransport : public vm::Transport {
   void arm(Fault fault, uint32_t exchanges, uint64_t seed);
   base::Result<base::Bytes> exchange(base::ByteSpan request) override;
   bool lost() const { return lost_; }
+  // Has it a fault, or had it one?
+  bool armed() const { return armed_; }
 
  private:
   vm::Service& service_;
@@ -32,6 +34,7 @@ class FaultyTransport : public vm::Transport {
   uint32_t exchanges_ = 0;
   uint64_t seed_ = 0;
   bool lost_ = false;
+  bool armed_ = false;
 };
 
 }  // namespace sim

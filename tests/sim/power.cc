@@ -36,8 +36,11 @@ void World::boot(const std::optional<ir::VerifiedImage>& given) {
   options.fuel_budget = 20'000'000;
   options.on_trap = ir::OnTrap::kStopTask;
   store_ = std::make_unique<online_change::Store>(disk_);
-  base::Result<online_change::Boot> boot = online_change::boot(*store_, given, "sim", 0);
+  events_ = std::make_unique<EventCheck>(*store_, clock_);
+  base::Result<online_change::Boot> boot =
+      online_change::boot(*store_, given, "sim", events_->wall_ns());
   require(boot.ok(), "a program boots");
+  options.events = &events_->ring();
   auto controller = vm::Controller::start(boot->image, options, clock_, devices_, boot->retained);
   require(controller.ok(), "the program starts");
   controller_ = std::move(*controller);
@@ -45,9 +48,12 @@ void World::boot(const std::optional<ir::VerifiedImage>& given) {
   boundary_->on_switch([this](const Snapshot& a, const Snapshot& b) { switched(a, b); });
   boundary_->on_cycle([this] { remember_retained(); });
   stvm::StartReport start{boot->trial_lost, boot->alarms};
-  service_ = std::make_unique<stvm::ControllerService>(*controller_, clock_, *store_, *boundary_,
-                                                       start, [] { return int64_t{0}; });
+  service_ = std::make_unique<stvm::ControllerService>(
+      *controller_, clock_, *store_, *boundary_, start, [this] { return events_->wall_ns(); });
   service_->resume(boot->edits);
+  for (const std::string& alarm : boot->alarms) say("  alarm: " + alarm);
+  expect_start(*boot);
+  check_events();
   remember_retained();
 }
 
@@ -83,6 +89,34 @@ void World::any_operation() {
   }
 }
 
+// What the thread of the keeper does once a second, with the boundary that it waits for.
+void World::keeper_round() {
+  online_change::RetainKeeper& keeper = service_->keeper();
+  keeper.step(clock_.now_ns());
+  while (!controller_->at_boundary()) boundary_->cycle();
+  keeper.serve(INT64_MAX);
+  keeper.step(clock_.now_ns());
+}
+
+void World::renew() {
+  constexpr int64_t kRoundNs = 1'000'000'000;
+  constexpr int kMostRounds = 20;  // the longest wait between two attempts is 8 s
+  store_->look();  // what could not be looked at is a complaint until somebody looks again
+  for (const std::string& text : store_->complaints()) {
+    events_->happened(Event::kAlarm, {}, text);
+  }
+  if (!store_->complaints().empty()) {
+    events_->happened(Event::kCleared, {}, "storage is well again");
+  }
+  for (int round = 0; round < kMostRounds; ++round) {
+    keeper_round();
+    const int64_t until_ns = clock_.now_ns() + kRoundNs;
+    while (clock_.now_ns() <= until_ns) boundary_->cycle();
+    service_->keep_up();
+  }
+  require(store_->complaints().empty(), "what has failed is renewed when the disk is well");
+}
+
 // Calls of the disk fail; in some worlds nobody renews what has failed before the power goes.
 void World::disk_fault() {
   const vm::StatusReport before = settled();
@@ -104,12 +138,7 @@ void World::disk_fault() {
   ++tally_.faults;
   if (random_.one_in(2)) return;
   say("  and is renewed");
-  require(store_->renew().ok(), "what has failed is renewed when the disk is well");
-  // What was switched or undone meanwhile is stored when it is tried next.
-  constexpr int64_t kNextTryNs = 9'000'000'000;  // the longest wait is 8 s
-  const int64_t until_ns = clock_.now_ns() + kNextTryNs;
-  while (clock_.now_ns() <= until_ns) boundary_->cycle();
-  service_->keep_up();
+  renew();  // what was switched or undone meanwhile is stored when it is tried next
   disk_failed_ = false;
 }
 
@@ -125,6 +154,7 @@ void World::power_cut() {
     };
     try {
       any_operation();
+      check_events();
       may_boot_ = {what_boots(settled())};
     } catch (const PowerCut&) {
       say("  there it was");
@@ -136,10 +166,14 @@ void World::power_cut() {
 
 void World::come_back() {
   ++tally_.cuts;
+  const SimStorage at_cut = disk_;  // what comes after it has never been
+  events_->end(*controller_);
   service_.reset();
   boundary_.reset();
   controller_.reset();
+  events_.reset();
   store_.reset();
+  disk_ = at_cut;
   const std::vector<Values> retained = std::move(retained_);
   retained_.clear();
   for (bool again = true; again;) {
@@ -156,13 +190,20 @@ void World::come_back() {
       again = false;
     } catch (const PowerCut&) {
       say("  and again");
+      const SimStorage at_next_cut = disk_;
+      service_.reset();
+      boundary_.reset();
+      controller_.reset();
+      events_.reset();
       store_.reset();
+      disk_ = at_next_cut;
     }
     disk_.before_call = nullptr;
   }
   disk_failed_ = false;
   const Values now = retained_values(*controller_);  // before anything of it runs
   const base::Digest running = controller_->verified().digest();
+  say("  boots " + base::short_hex(running));
   require(std::find(may_boot_.begin(), may_boot_.end(), running) != may_boot_.end(),
           "what boots is what was accepted last");
   on_trial_.clear();

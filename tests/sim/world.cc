@@ -64,6 +64,7 @@ bool World::run(int steps) {
 
 void World::switched(const Snapshot& before, const Snapshot& now) {
   ++tally_.switches;
+  events_->switched();
   require(may_delay_ || clock_.now_ns() <= controller_->next_cycle_ns(),
           "a switch delayed a release");
   try {
@@ -102,6 +103,7 @@ void World::bad_luck(Hand& hand) {
   const auto fault = static_cast<Fault>(1 + random_.below(kFaultCount - 1));
   hand.way->arm(fault, random_.below(6), random_.next());
   ++tally_.faults;
+  events_->any_refusal();
   say("  with a fault of the connection");
 }
 
@@ -152,7 +154,11 @@ uint32_t World::strategy() { return random_.one_in(2) ? vm::kByStandby : 0u; }
 
 void World::step() {
   ++tally_.steps;
-  const uint32_t kind = disk_failed_ ? 22u : random_.below(24);
+  act(disk_failed_ ? 23u : random_.below(25));
+  check_events();
+}
+
+void World::act(uint32_t kind) {
   if (kind < 6) return let_run();
   if (kind < 11) return change();
   if (kind < 13) return undo();
@@ -164,6 +170,7 @@ void World::step() {
   if (kind == 19) return restart();
   if (kind == 20) return save();
   if (kind == 21) return disk_fault();
+  if (kind == 22) return device_fault();
   return power_cut();
 }
 
@@ -190,20 +197,9 @@ base::Status World::try_change(Hand& hand, base::ByteSpan package, uint32_t flag
   return base::Ok{};
 }
 
-// A trap in its first cycles, and the controller has undone it by itself (X7).
-bool World::given_back() {
-  const auto journal = connect().client->journal();
-  if (!journal.ok()) return false;
-  for (auto entry = journal->rbegin(); entry != journal->rend(); ++entry) {
-    if (entry->event == online_change::Event::kSwitched) return false;
-    if (entry->event == online_change::Event::kUndone) return entry->who == "controller";
-  }
-  return false;
-}
-
 void World::change() {
   Hand hand = connect();
-  say("change, state " + hand.seen.change);
+  say("change of " + base::short_hex(hand.seen.running) + ", state " + hand.seen.change);
   std::shared_ptr<Version> next = edited_version(hand.seen.running);
   if (!next) return;
   std::optional<base::Bytes> package = package_for(hand.seen.running, *next);
@@ -211,9 +207,12 @@ void World::change() {
   const uint32_t flags =
       (random_.one_in(3) ? 0u : vm::kAllowLoss) | (random_.one_in(2) ? vm::kAllowOverrun : 0u) |
       (random_.one_in(5) ? vm::kPermanent : 0u) | (random_.one_in(3) ? vm::kLastEditBoots : 0u);
-  const bool boots = (flags & (vm::kPermanent | vm::kLastEditBoots)) != 0;
-  may_boot_.push_back(boots ? ir::digest(online_change::decode(*package)->image)
-                            : hand.seen.boots_next);
+  // Until it is accepted, one that is permanent is on trial by its own policy.
+  const bool permanent = (flags & vm::kPermanent) != 0;
+  const bool last_edit = (flags & vm::kLastEditBoots) != 0;
+  if (!last_edit) may_boot_.push_back(hand.seen.boots_next);
+  if (last_edit || permanent)
+    may_boot_.push_back(ir::digest(online_change::decode(*package)->image));
   bad_luck(hand);
   boundary_->guard("a change that was not switched");
   may_delay_ = (flags & vm::kAllowOverrun) != 0;
@@ -221,9 +220,9 @@ void World::change() {
   may_delay_ = false;
   boundary_->guard("");
   if (!done.ok()) refused(done.error());
+  told_refused(hand, done);
   const vm::StatusReport now = settled();
   const bool lost = hand.way->lost();
-  const bool permanent = (flags & vm::kPermanent) != 0;
   if (done.ok() && !permanent && now.running == hand.seen.running && given_back()) {
     require(now.edits == hand.seen.edits, "what was given back is not on trial");
   } else if (done.ok()) {
@@ -266,6 +265,7 @@ void World::bad_package() {
   boundary_->guard("");
   require(!staged.ok(), "a bad package is refused");
   refused(staged.error());
+  told_refused(hand, staged.error());
   require(settled().running == hand.seen.running, "and nothing else happens");
 }
 
@@ -287,6 +287,10 @@ void World::two_tools() {
   auto late = two.client->make_switch(vm::kAllowLoss);
   boundary_->guard("");
   require(!(report.ok() && late.ok()), "one of two tools switches at most");
+  told_refused(one, staged);
+  told_refused(two, other);
+  if (!report.ok()) told_refused(one, report.error());
+  if (!late.ok()) told_refused(two, late.error());
   const vm::StatusReport now = settled();
   if (!report.ok() && !late.ok()) {
     require(now.running == one.seen.running, "none switched, so the old program runs");
@@ -314,6 +318,7 @@ void World::undo() {
     require(report->missed == 0, "an undo missed no release");
   } else {
     refused(report.error());
+    told_refused(hand, report.error());
     const bool may_be = hand.way->lost() && trial && now.running == hand.seen.previous;
     require(may_be || now.running == hand.seen.running, "an undo that was refused does nothing");
   }
@@ -333,6 +338,8 @@ void World::accept() {
   require(now.running == hand.seen.running, "accept does not change what runs");
   const bool lost = hand.way->lost();
   if (!done.ok()) refused(done.error());
+  const bool nothing = !done.ok() && done.error().refusal == base::Refusal::kNothingToUndo;
+  if (!done.ok() && !nothing) told_refused(hand, done.error());
   if (done.ok() && !lost) {  // else a bit that was damaged may have made another request of it
     require(trial, "only a trial can be accepted");
     require(now.boots_next == now.running && now.edits == 0, "what is accepted boots next");

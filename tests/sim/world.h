@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "online_change/package/package.h"
+#include "online_change/store/boot.h"
 #include "tests/differential/random.h"
 #include "tests/differential/tree.h"
 #include "tests/golden/runner/compile.h"
+#include "tests/sim/event_check.h"
 #include "tests/sim/faulty_transport.h"
 #include "tests/sim/stepped_boundary.h"
 #include "tests/unit/store/sim_storage.h"
@@ -61,11 +63,11 @@ class World {
 
   bool begin();
   void step();
+  void act(uint32_t kind);
   void scan_for(int64_t ns);
   void forget_versions();
   uint32_t strategy();  // of a change, as a flag of the protocol
   void let_run();
-  bool given_back();
   void change();
   void bad_package();
   void two_tools();
@@ -76,6 +78,9 @@ class World {
   void restart();
   // power.cc
   void save();
+  // Storage is well again, and its keeper finds that out.
+  void renew();
+  void keeper_round();
   void disk_fault();
   void power_cut();
 
@@ -94,6 +99,13 @@ class World {
   // stage, look at the fates, switch; what came of it.
   base::Status try_change(Hand& hand, base::ByteSpan package, uint32_t flags);
   void switched(const Snapshot& before, const Snapshot& now);
+  // told.cc: what has happened has been told.
+  void device_fault();
+  bool given_back();
+  void check_events();
+  void expect_start(const online_change::Boot& boot);
+  // If it was refused, by a controller that could answer.
+  void told_refused(const Hand& hand, const base::Status& done);
   void say(const std::string& text);
   void refused(const base::Error& error);
 
@@ -105,6 +117,7 @@ class World {
   vm::SimulatedIo devices_;
   SimStorage disk_;
   std::unique_ptr<online_change::Store> store_;
+  std::unique_ptr<EventCheck> events_;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<SteppedBoundary> boundary_;
   std::unique_ptr<stvm::ControllerService> service_;
