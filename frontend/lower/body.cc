@@ -23,19 +23,17 @@ Body::Body(Sema& sema, const PouScope& scope, PouInfo& info, uint32_t number, ir
 void Body::run() {
   const PouDecl& decl = *info_.decl;
   base::SourceLocation head = sema_.sources.locate(decl.span.begin);
-  line_file_ = sema_.sources.file_of(decl.span.begin);
   out_.file = head.file;
   out_.line = head.line;
-  line_begin_ = decl.span.begin.offset;
-  line_end_ = line_begin_;
-  line_ = head.line;
+  lines_.begin(decl.span.begin, head.line);
   if (info_.made == MadeCode::kNone) out_.content = decl.content;
   build_.set_line(head.line);
   initialise_locals();
   connect_inputs();
   detect_edges();
   mock_prologue();
-  count_pou();
+  const bool written = info_.made == MadeCode::kNone && !info_.test && !info_.library;
+  if (written) counting_.begin(sema_.options.coverage, out_.name);
   if (info_.test && decl.kind == PouKind::kProgram) activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) exit_ = build_.new_block();
@@ -82,37 +80,7 @@ bool Body::is_outside(base::SourcePos pos) const {
 void Body::set_line(base::SourceSpan span) {
   if (!span.begin.valid()) return;
   if (sema_.log != nullptr && is_outside(span.begin)) sema_.log->other_lines = true;
-  const uint32_t offset = span.begin.offset;
-  if (offset < line_begin_ || offset > line_end_) find_line(span.begin);
-  build_.set_line(line_);
-}
-
-void Body::find_line(base::SourcePos pos) {
-  const uint32_t offset = pos.offset;
-  uint32_t base = sema_.sources.begin(line_file_).offset;
-  if (offset < base || offset - base >= sema_.sources.text(line_file_).size()) {
-    line_file_ = sema_.sources.file_of(pos);
-    base = sema_.sources.begin(line_file_).offset;
-  }
-  // A type's initial values may stand in another file than the variable; a drawing goes up and
-  // down in its rows.
-  constexpr uint32_t kFar = 4096;
-  const bool far = offset < line_end_ || line_end_ < base || offset - line_end_ > kFar;
-  if (far || sema_.sources.has_pieces()) {
-    const base::SourceLocation location = sema_.sources.locate(pos);
-    line_ = location.line;
-    line_begin_ = offset + 1 - location.column;
-    line_end_ = offset;
-    return;
-  }
-  const std::string_view text = sema_.sources.text(line_file_);
-  size_t end = text.find('\n', line_end_ - base);
-  while (end < offset - base) {
-    ++line_;
-    line_begin_ = base + static_cast<uint32_t>(++end);
-    end = text.find('\n', end);
-  }
-  line_end_ = base + static_cast<uint32_t>(std::min(end, text.size()));
+  build_.set_line(lines_.line_of(span.begin));
 }
 
 ir::ValueId ValueCode::zero(ir::TypeId type) {

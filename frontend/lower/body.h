@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "frontend/coverage.h"
 #include "frontend/lower/builder.h"
+#include "frontend/lower/counting.h"
 #include "frontend/lower/handles.h"
+#include "frontend/lower/line_finder.h"
 #include "frontend/lower/target.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/sema/phase.h"
@@ -283,15 +284,6 @@ class Body : public Phase {
   void activate_mock_bodies();
   void forward_to_mock(const PouInfo& mock);
 
-  // --- coverage (coverage.cc): no code unless the options ask for it
-  void count_pou();
-  void count(SiteKind kind, base::SourcePos at, const std::string& name = {}, uint32_t side = 0);
-  void count_statement(const Stmt& stmt);
-  void count_power(ir::ValueId power, ExprId target, base::SourcePos at);
-  // Goes on at `yes` or `no`, and counts both.
-  void decide(ir::ValueId condition, ir::BlockId yes, ir::BlockId no, base::SourcePos at,
-              const char* what);
-
   // --- standard functions (standard*.cc)
   ir::ValueId emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own);
   ir::ValueId real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
@@ -326,7 +318,6 @@ class Body : public Phase {
   void leave();
   void initialise(const ir::Place& where, const Variable& variable);
   void set_line(base::SourceSpan span);
-  void find_line(base::SourcePos pos);
   bool is_outside(base::SourcePos pos) const;
   const ir::TypeTable& types() const { return sema_.program.types; }
   ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }
@@ -349,6 +340,8 @@ class Body : public Phase {
   uint32_t pou_number_;
   ir::Pou out_;
   Builder build_;
+  LineFinder lines_{sema_.sources};
+  Counting counting_{build_, tree_, info_};
   ValueCode code_{build_, sema_.program.types, sema_.options.dialect};
   std::vector<Loop> loops_;
   ir::BlockId exit_;               // what RETURN goes to; invalid: out of the POU
@@ -357,16 +350,9 @@ class Body : public Phase {
   std::vector<VarId> for_variables_;
   std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
   std::unordered_map<uint32_t, ir::Place> result_places_;
-  Coverage* coverage_ = nullptr;            // where this body is counted; null: it is not
-  const network::Network* rung_ = nullptr;  // the last that was counted
   bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
   static constexpr uint32_t kNoLocal = 0xffffffffu;
   std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
-  // Where the last line was found; positions mostly go forward.
-  uint32_t line_begin_ = 0;  // from where on,
-  uint32_t line_end_ = 0;    // and how far it is the same line
-  uint32_t line_file_ = 0;   // which file that is, most likely
-  uint32_t line_ = 0;
 };
 
 }  // namespace frontend

@@ -67,15 +67,15 @@ void Body::case_statement(const Stmt& stmt) {
   case_tree(tests, 0, leaves.size());
   for (uint32_t i = 0; i < stmt.arms.count; ++i) {
     build_.start(arms[i]);
-    if (coverage_ != nullptr) {
+    if (counting_.on()) {
       const uint32_t line = sema_.sources.locate(tree_.cases[stmt.arms.first + i].span.begin).line;
-      count(SiteKind::kBranch, stmt.span.begin, "CASE: line " + std::to_string(line), i);
+      counting_.count(SiteKind::kBranch, stmt.span.begin, "CASE: line " + std::to_string(line), i);
     }
     statements(tree_.cases[stmt.arms.first + i].body);
     if (build_.reachable()) build_.jump(done);
   }
   build_.start(otherwise);
-  count(SiteKind::kBranch, stmt.span.begin, "CASE: ELSE", stmt.arms.count);
+  counting_.count(SiteKind::kBranch, stmt.span.begin, "CASE: ELSE", stmt.arms.count);
   statements(stmt.else_body);
   if (build_.reachable()) build_.jump(done);
   build_.start(done);

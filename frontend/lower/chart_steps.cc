@@ -203,7 +203,7 @@ void ChartBody::transition(uint32_t number) {
 }
 
 void ChartBody::count_transition(uint32_t number) {
-  if (body_.coverage_ == nullptr) return;
+  if (!body_.counting_.on()) return;
   const auto names = [&](const std::vector<uint32_t>& steps) {
     std::string text;
     for (const uint32_t step : steps) {
@@ -212,17 +212,17 @@ void ChartBody::count_transition(uint32_t number) {
     return text;
   };
   const sfc::Transition& transition = net_.transitions[number];
-  body_.count(SiteKind::kTransition, transition.decl->span.begin,
-              names(transition.from) + " to " + names(transition.to));
+  body_.counting_.count(SiteKind::kTransition, transition.decl->span.begin,
+                        names(transition.from) + " to " + names(transition.to));
 }
 
 // At the end of a call, when all moves are made.
 void ChartBody::count_steps() {
-  if (body_.coverage_ == nullptr) return;
+  if (!body_.counting_.on()) return;
   for (uint32_t step = 0; step < net_.steps.size(); ++step) {
     const Name& name = net_.steps[step].decl->name;
     when(part(steps_[step], "X"),
-         [&] { body_.count(SiteKind::kStep, name.span.begin, std::string(name.text)); });
+         [&] { body_.counting_.count(SiteKind::kStep, name.span.begin, std::string(name.text)); });
   }
 }
 

@@ -17,7 +17,7 @@ std::optional<Constant> Body::evaluate(Sema& sema, const PouScope& scope, ExprId
   Body body(sema, scope, info, kNoPou, ir::Pou{});
   body.evaluating_ = true;
   base::SourceSpan span = sema.tree[id].span;
-  body.line_end_ = span.begin.offset;
+  body.lines_.leave_out(span.begin);
   Note note = body.infer(id);
   const bool wide = note.width == Width::kWide;
   ir::TypeId type = without_range(sema.program.types,

@@ -48,14 +48,14 @@ void Body::for_statement(const Stmt& stmt) {
   ir::BlockId next = build_.new_block();
   ir::BlockId exit = build_.new_block();
   const bool may_be_left_out = !infer(stmt.from).constant || !loop.constant_to;
-  if (coverage_ != nullptr && may_be_left_out) {
+  if (counting_.on() && may_be_left_out) {
     const ir::BlockId sides[] = {build_.new_block(), build_.new_block()};
     for_test(loop, sides[0], sides[1]);
     build_.start(sides[0]);
-    count(SiteKind::kBranch, stmt.span.begin, "FOR: some rounds", 0);
+    counting_.count(SiteKind::kBranch, stmt.span.begin, "FOR: some rounds", 0);
     build_.jump(head);
     build_.start(sides[1]);
-    count(SiteKind::kBranch, stmt.span.begin, "FOR: no round", 1);
+    counting_.count(SiteKind::kBranch, stmt.span.begin, "FOR: no round", 1);
   }
   build_.jump(head);
   build_.start(head);

@@ -25,7 +25,7 @@ void Body::statements(Range32 list) {
 
 void Body::statement(const Stmt& stmt) {
   set_line(stmt.span);
-  count_statement(stmt);
+  counting_.statement(stmt);
   switch (stmt.kind) {
     case StmtKind::kError:
     case StmtKind::kEmpty:
@@ -85,7 +85,7 @@ void Body::if_statement(const Stmt& stmt) {
       warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
               "this condition is always the same");
     }
-    decide(condition(branch.condition), then, otherwise, at, i == 0 ? "IF" : "ELSIF");
+    counting_.decide(condition(branch.condition), then, otherwise, at, i == 0 ? "IF" : "ELSIF");
     build_.start(then);
     statements(branch.body);
     if (build_.reachable()) build_.jump(done);
@@ -129,7 +129,7 @@ void Body::while_statement(const Stmt& stmt) {
   ir::BlockId exit = build_.new_block();
   build_.jump(head);
   build_.start(head);
-  decide(condition(stmt.value), body, exit, tree_[stmt.value].span.begin, "WHILE");
+  counting_.decide(condition(stmt.value), body, exit, tree_[stmt.value].span.begin, "WHILE");
   build_.start(body);
   if (!loop_body(stmt.body, head, exit)) check_end(stmt.value, true);
   build_.start(exit);
@@ -143,7 +143,7 @@ void Body::repeat_statement(const Stmt& stmt) {
   build_.start(body);
   if (!loop_body(stmt.body, test, exit)) check_end(stmt.value, false);
   build_.start(test);
-  decide(condition(stmt.value), exit, body, tree_[stmt.value].span.begin, "UNTIL");
+  counting_.decide(condition(stmt.value), exit, body, tree_[stmt.value].span.begin, "UNTIL");
   build_.start(exit);
 }
 

@@ -1,7 +1,7 @@
 // Counting, where a build for coverage asks for it (frontend/coverage.h).
-#include "frontend/coverage.h"
+#include "frontend/lower/counting.h"
 
-#include "frontend/lower/body.h"
+#include "frontend/sema/model.h"
 
 namespace frontend {
 namespace {
@@ -19,16 +19,14 @@ const network::Network* network_at(const network::Body& body, base::SourcePos at
 
 }  // namespace
 
-void Body::count_pou() {
-  const PouDecl& decl = *info_.decl;
-  const bool written = info_.made == MadeCode::kNone && !info_.test && !info_.library;
-  Coverage* coverage = sema_.options.coverage;
-  if (coverage == nullptr || !written || !coverage->counts(decl.span.begin)) return;
+void Counting::begin(Coverage* coverage, const std::string& pou) {
+  const base::SourcePos at = info_.decl->span.begin;
+  if (coverage == nullptr || !coverage->counts(at)) return;
   coverage_ = coverage;
-  count(SiteKind::kPou, decl.span.begin, out_.name);
+  count(SiteKind::kPou, at, pou);
 }
 
-void Body::count(SiteKind kind, base::SourcePos at, const std::string& name, uint32_t side) {
+void Counting::count(SiteKind kind, base::SourcePos at, const std::string& name, uint32_t side) {
   if (coverage_ == nullptr) return;
   const ir::Place counter = coverage_->counter(kind, at, side, name);
   const ir::ValueId before = build_.load(counter, ir::Scalar::kU32);
@@ -37,7 +35,7 @@ void Body::count(SiteKind kind, base::SourcePos at, const std::string& name, uin
       build_.binary(ir::Op::kAdd, ir::Scalar::kU32, before, build_.constant(ir::Scalar::kU32, 1)));
 }
 
-void Body::count_statement(const Stmt& stmt) {
+void Counting::statement(const Stmt& stmt) {
   const bool runs = stmt.kind != StmtKind::kEmpty && stmt.kind != StmtKind::kError &&
                     stmt.kind != StmtKind::kLabel;
   if (coverage_ == nullptr || !runs) return;
@@ -53,8 +51,8 @@ void Body::count_statement(const Stmt& stmt) {
 }
 
 // In two blocks of their own, whatever else leads to `yes` and `no`.
-void Body::decide(ir::ValueId condition, ir::BlockId yes, ir::BlockId no, base::SourcePos at,
-                  const char* what) {
+void Counting::decide(ir::ValueId condition, ir::BlockId yes, ir::BlockId no, base::SourcePos at,
+                      const char* what) {
   if (coverage_ == nullptr) return build_.branch(condition, yes, no);
   const ir::BlockId sides[] = {build_.new_block(), build_.new_block()};
   build_.branch(condition, sides[0], sides[1]);
@@ -66,8 +64,7 @@ void Body::decide(ir::ValueId condition, ir::BlockId yes, ir::BlockId no, base::
   build_.jump(no);
 }
 
-// A coil, or a BOOL that a network writes: with power and without.
-void Body::count_power(ir::ValueId power, ExprId target, base::SourcePos at) {
+void Counting::power(ir::ValueId power, ExprId target, base::SourcePos at) {
   if (coverage_ == nullptr || info_.decl->diagram == kNoDiagram) return;
   const Expr& expr = tree_[target];
   const bool made = expr.name.text.find('#') != std::string_view::npos;  // what an edge remembers
