@@ -110,7 +110,7 @@ class Resident {
   base::Diagnostics diagnostics_;
   std::unique_ptr<Parsed> parsed_;
   std::unique_ptr<Sema> sema_;
-  std::vector<BodyRecord> bodies_;   // by number in Sema::pous
+  std::vector<BodyRecord> bodies_;   // by number in Declarations::pous
   std::vector<ir::Pou> heads_;       // by PouId: without a body
   std::vector<uint32_t> number_of_;  // by PouId
   std::vector<uint32_t> marks_;      // by mark: bodies that make it, and one more for declarations

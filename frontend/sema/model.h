@@ -243,7 +243,7 @@ struct MemberCode {
 enum class MadeCode : uint8_t { kNone, kStart, kReset, kLeave };
 
 struct PouInfo {
-  uint32_t number = 0;  // in Sema::pous
+  uint32_t number = 0;  // in Declarations::pous
   const PouDecl* decl = nullptr;
   std::string_view name;           // qualified: A.B.Pump; of a method: its own
   const PouDecl* setup = nullptr;  // of a TEST: runs before and after its body

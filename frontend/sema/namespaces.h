@@ -1,7 +1,7 @@
 // Namespaces (IEC 61131-3 edition 3, 6.9): what a name means where it is written. Every
-// declaration has one qualified name, A.B.Pump: the key of Sema's tables and the name in the
-// program. Only find() knows the way from a written name to it: the namespaces around the place,
-// from the inside out; then USING; then the names that vendors gave the standard library.
+// declaration has one qualified name, A.B.Pump: the key of tables in Declarations and the name in
+// the program. Only find() knows the way from a written name to it: the namespaces around the
+// place, from the inside out; then USING; then the names that vendors gave the standard library.
 // docs/adr/0010-namespaces.md.
 //
 // Made of the tree before anything is collected; declare() with each declaration of the project,

@@ -1,8 +1,8 @@
 // What blocks, programs and interfaces have besides variables: methods, actions and
 // properties; their bases and interfaces; who may use what. Code of a member is a POU of
-// its own in Sema::pous (PouInfo::owner leads back). docs/adr/0006-objects.md.
+// its own in Declarations::pous (PouInfo::owner leads back). docs/adr/0006-objects.md.
 //
-// Functions over one Sema, called in this order: collect() with each block, inherit() when
+// Phase, called in this order: collect() with each block, inherit() when
 // all names are known, check() when all interfaces are resolved; the questions at any time
 // after inherit().
 #pragma once
@@ -86,7 +86,7 @@ class Objects : public Phase {
   // Are there instances in it that start code visits?
   bool constructs(ir::TypeId type);
   VarId add_hidden_global(std::string_view name, ir::TypeId type, base::SourceSpan span);
-  // Returns the method's number in Sema::pous.
+  // Returns the method's number in Declarations::pous.
   uint32_t add_made_method(uint32_t block, std::string_view name, MadeCode code);
   // What the stamp of an instance becomes: another number for another layout.
   uint32_t stamp_of(const PouInfo& block) const;

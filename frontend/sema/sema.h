@@ -1,7 +1,6 @@
-// Meaning of a syntax tree: names, types, constants, initial values, interfaces.
-// Sema owns the program under construction and everything known about the tree;
-// lowering asks it about expressions. Order of declarations never matters:
-// whatever is asked for is resolved on the spot, and circles are reported.
+// What is known of one compilation: the stores that phases (phase.h) and lowering read and write,
+// and the program under construction. It resolves nothing itself. Order of declarations never
+// matters: phases resolve what is asked for on the spot, and report circles.
 //
 // One instance serves one compilation. Every problem is reported once to the
 // sink; what cannot be resolved has an invalid id and silences follow-ups.
@@ -38,6 +37,7 @@ class Sema {
   Sema(const base::SourceMap& sources, const Tree& tree, uint32_t library_file,
        const CompileOptions& options, Purpose purpose, base::Diagnostics& diagnostics);
 
+  // Code reads or calls the variable; code writes it, or takes its address.
   void mark_used(VarId id);
   void mark_written(VarId id);
   bool for_tests() const { return purpose == Purpose::kTest; }
