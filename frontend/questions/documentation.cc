@@ -1,6 +1,6 @@
 #include "frontend/questions/documentation.h"
 
-#include <vector>
+#include <algorithm>
 
 namespace frontend::questions {
 namespace {
@@ -9,49 +9,6 @@ std::string_view trimmed(std::string_view text) {
   const size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
-}
-
-struct Comment {
-  size_t begin;
-  size_t end;
-};
-
-// All comments of the text, in order. Strings and attributes have none in them.
-std::vector<Comment> comments_of(std::string_view text) {
-  std::vector<Comment> found;
-  for (size_t at = 0; at < text.size();) {
-    const std::string_view rest = text.substr(at);
-    size_t end = std::string_view::npos;
-    if (rest.starts_with("//")) {
-      end = text.find('\n', at);
-      found.push_back({at, end == std::string_view::npos ? text.size() : end});
-    } else if (rest.starts_with("(*") || rest.starts_with("/*")) {
-      const char close = rest[0] == '(' ? ')' : '/';
-      size_t depth = 1;
-      end = at + 2;
-      for (; end + 1 < text.size() && depth > 0; ++end) {
-        if (text[end] == rest[0] && text[end + 1] == '*')
-          ++depth, ++end;
-        else if (text[end] == '*' && text[end + 1] == close)
-          --depth, ++end;
-      }
-      found.push_back({at, end});
-    } else if (rest[0] == '\'' || rest[0] == '"') {
-      end = at + 1;
-      while (end < text.size() && text[end] != rest[0] && text[end] != '\n') {
-        end += text[end] == '$' ? 2 : 1;
-      }
-      ++end;
-    } else if (rest[0] == '{') {
-      end = text.find('}', at);
-    } else {
-      ++at;
-      continue;
-    }
-    if (end >= text.size()) break;
-    at = end;
-  }
-  return found;
 }
 
 // Without the marks of the comment, and without a border of stars.
@@ -98,32 +55,72 @@ size_t begin_of(std::string_view text, size_t name) {
 
 }  // namespace
 
-std::string documentation(std::string_view text, size_t name, bool below) {
-  const std::vector<Comment> comments = comments_of(text);
-  std::string above;
-  size_t begin = begin_of(text, name);
-  for (auto comment = comments.rbegin(); comment != comments.rend(); ++comment) {
-    if (comment->begin >= begin) continue;
-    const size_t line = text.rfind('\n', comment->begin);
+// Strings and attributes have no comments in them.
+Documentation::Documentation(std::string_view text) : text_(text) {
+  for (size_t at = 0; at < text_.size();) {
+    const std::string_view rest = text_.substr(at);
+    size_t end = std::string_view::npos;
+    if (rest.starts_with("//")) {
+      end = text_.find('\n', at);
+      comments_.push_back({at, end == std::string_view::npos ? text_.size() : end});
+    } else if (rest.starts_with("(*") || rest.starts_with("/*")) {
+      const char close = rest[0] == '(' ? ')' : '/';
+      size_t depth = 1;
+      end = at + 2;
+      for (; end + 1 < text_.size() && depth > 0; ++end) {
+        if (text_[end] == rest[0] && text_[end + 1] == '*')
+          ++depth, ++end;
+        else if (text_[end] == '*' && text_[end + 1] == close)
+          --depth, ++end;
+      }
+      comments_.push_back({at, end});
+    } else if (rest[0] == '\'' || rest[0] == '"') {
+      end = at + 1;
+      while (end < text_.size() && text_[end] != rest[0] && text_[end] != '\n') {
+        end += text_[end] == '$' ? 2 : 1;
+      }
+      ++end;
+    } else if (rest[0] == '{') {
+      end = text_.find('}', at);
+    } else {
+      ++at;
+      continue;
+    }
+    if (end >= text_.size()) break;
+    at = end;
+  }
+}
+
+std::string Documentation::above(size_t name) const {
+  std::string out;
+  size_t begin = begin_of(text_, name);
+  auto comment = std::partition_point(comments_.begin(), comments_.end(),
+                                      [&](const Comment& one) { return one.begin < begin; });
+  while (comment != comments_.begin()) {
+    --comment;
+    const size_t line = text_.rfind('\n', comment->begin);
     const size_t first = line == std::string_view::npos ? 0 : line + 1;
-    const bool alone = trimmed(text.substr(first, comment->begin - first)).empty();
-    if (!alone || !is_gap(text.substr(comment->end, begin - comment->end), 1)) break;
-    const std::string one = text_of(text.substr(comment->begin, comment->end - comment->begin));
-    above = above.empty() ? one : one + '\n' + above;
+    const bool alone = trimmed(text_.substr(first, comment->begin - first)).empty();
+    if (!alone || !is_gap(text_.substr(comment->end, begin - comment->end), 1)) break;
+    const std::string one = text_of(text_.substr(comment->begin, comment->end - comment->begin));
+    out = out.empty() ? one : one + '\n' + out;
     begin = comment->begin;
   }
-  if (!above.empty()) return above;
-  const size_t newline = text.find('\n', name);
-  const size_t end = newline == std::string_view::npos ? text.size() : newline;
-  size_t after = below ? end : name;
-  for (const Comment& comment : comments) {
-    if (comment.begin < name) continue;
-    const bool in_line = comment.begin < end;
-    const bool next = below && is_gap(text.substr(after, comment.begin - after), 1);
-    if (!in_line && !next) break;
-    return text_of(text.substr(comment.begin, comment.end - comment.begin));
-  }
-  return {};
+  return out;
+}
+
+std::string Documentation::at(size_t name, bool below) const {
+  std::string over = above(name);
+  if (!over.empty()) return over;
+  const auto comment = std::partition_point(comments_.begin(), comments_.end(),
+                                            [&](const Comment& one) { return one.begin < name; });
+  if (comment == comments_.end()) return {};
+  const size_t end = std::min(text_.find('\n', name), text_.size());
+  const bool in_line = comment->begin < end;
+  const bool next =
+      below && comment->begin >= end && is_gap(text_.substr(end, comment->begin - end), 1);
+  if (!in_line && !next) return {};
+  return text_of(text_.substr(comment->begin, comment->end - comment->begin));
 }
 
 }  // namespace frontend::questions

@@ -4,11 +4,28 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace frontend::questions {
 
-// `text`: a source file. `name`: where the declared name begins in it. `below`: look below, too.
-// The comments' text without their marks, a line each; "": there are none.
-std::string documentation(std::string_view text, size_t name, bool below);
+// Of one source file, whose text outlives it and is read once.
+class Documentation {
+ public:
+  explicit Documentation(std::string_view text);
+
+  // `name`: where the declared name begins in the text. `below`: look below, too. The comments'
+  // text without their marks, a line each; "": there are none.
+  std::string at(size_t name, bool below) const;
+
+ private:
+  struct Comment {
+    size_t begin;
+    size_t end;
+  };
+  std::string above(size_t name) const;
+
+  std::string_view text_;
+  std::vector<Comment> comments_;  // in order
+};
 
 }  // namespace frontend::questions

@@ -1,7 +1,6 @@
 #include "frontend/questions/questions.h"
 #include "frontend/sema/objects.h"
 
-#include "frontend/questions/documentation.h"
 #include "frontend/questions/walk.h"
 #include "frontend/sema/sema.h"
 
@@ -174,13 +173,13 @@ const Symbol* Questions::called_at(base::SourcePos pos) {
   return symbol_at(finder.called);
 }
 
-std::string Questions::documentation_of(const Symbol& symbol) const {
+std::string Questions::documentation_of(const Symbol& symbol) {
   if (symbol.row != nullptr) return std::string(symbol.row->meaning);
   const uint32_t file = sema_.sources.file_of(symbol.defined.begin);
   if (file == sema_.sources.file_count()) return {};
   const bool below = symbol.pou != kNoPou;
-  return documentation(sema_.sources.text(file),
-                       symbol.defined.begin.offset - sema_.sources.begin(file).offset, below);
+  const Documentation& all = documented_.try_emplace(file, sema_.sources.text(file)).first->second;
+  return all.at(symbol.defined.begin.offset - sema_.sources.begin(file).offset, below);
 }
 
 void Questions::describe_call(const PouInfo& info, Signature& out) const {
@@ -205,7 +204,7 @@ void Questions::describe_call(const PouInfo& info, Signature& out) const {
   }
 }
 
-Signature Questions::signature_of(const Symbol& symbol) const {
+Signature Questions::signature_of(const Symbol& symbol) {
   Signature out;
   out.documentation = documentation_of(symbol);
   if (symbol.row != nullptr) {

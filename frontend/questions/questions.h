@@ -8,11 +8,13 @@
 // goes through the whole project, others are cheap. docs/adr/0040-questions.md
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "frontend/questions/documentation.h"
 #include "frontend/questions/symbols.h"
 
 namespace frontend::questions {
@@ -51,17 +53,18 @@ class Questions {
   std::vector<Occurrence> uses_of(const Symbol& symbol);
   // Of the innermost expression there that has a type.
   std::optional<TypedExpression> type_at(base::SourcePos pos);
-  Signature signature_of(const Symbol& symbol) const;
+  Signature signature_of(const Symbol& symbol);
   // What is called around the position; null: nothing is.
   const Symbol* called_at(base::SourcePos pos);
   const Index& index();
 
  private:
-  std::string documentation_of(const Symbol& symbol) const;
+  std::string documentation_of(const Symbol& symbol);
   void describe_call(const PouInfo& info, Signature& out) const;
 
   Sema& sema_;
   std::optional<Index> index_;
+  std::map<uint32_t, Documentation> documented_;  // by file
 };
 
 }  // namespace frontend::questions

@@ -10,6 +10,8 @@
 
 namespace frontend {
 
+class Phase;
+
 // An integer or a bit string below 32 bits?
 bool is_small(const Sema& sema, const Note& note);
 // The width of an operator's result, whose type is the note's. `can_grow`: it may leave that type.

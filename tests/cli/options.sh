@@ -17,14 +17,14 @@ for tool in stc stvm; do
     expect 0 $tool $way
     said "^$tool $version$"
     said "^commit +$commit$"
-    said '^image formats +7, 8, 9, 10, 11, 12, 13, 14, 15, 16$'
+    said '^image formats +7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18$'
     said '^adapters +(none|modbus|xml, plcopen, twincat)$'
     said '^native tier +(none|x86-64|aarch64)$'
     silent_on err
   done
   expect 0 $tool --version --format json
   json "d['tool'] == '$tool' and d['version'] == '$version' and d['commit'] == '$commit'"
-  json 'd["image_formats"] == list(range(7, 17)) and isinstance(d["adapters"], list)'
+  json 'd["image_formats"] == list(range(7, 19)) and isinstance(d["adapters"], list)'
   expect 2 $tool version good.img
   said 'R0504: version: too many arguments: good.img'
 done

@@ -284,7 +284,7 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Ex
   complain(keeper_.save(after));
   note_units("undone", (*report)->cycle_after);
   note_switch(online_change::Event::kUndone, undone, **report, predicted_ns,
-              undone_text(left_out, why));
+              undone_text(undone_.back().edit.name, left_out, why));
   not_undone_.clear();
   forget_rehearsal();
   probation_.reset();

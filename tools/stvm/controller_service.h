@@ -251,7 +251,6 @@ class ControllerService : public vm::Service {
   void go_on_hot();
   base::Result<base::Bytes> undo_now(const std::string& why, online_change::Exits exits);
   // "edit E2, without FB_Exit of Main.a: why"
-  std::string undone_text(const std::string& without, const std::string& why) const;
 
   // controller_journal.cc
   online_change::JournalEntry entry(online_change::Event event) const;

@@ -86,13 +86,6 @@ void ControllerService::begin_or_end_chain(Trial& trial) {
   if (more || goes_on) more_of_ = more ? session_ : 0;
 }
 
-std::string ControllerService::undone_text(const std::string& without,
-                                           const std::string& why) const {
-  std::string text = "edit " + undone_.back().edit.name;
-  if (!without.empty()) text += ", without FB_Exit of " + without;
-  return why.empty() ? text : text + ": " + why;
-}
-
 // With all that came before it as parts of the same (E-26). An FB_Exit that traps is left out then:
 // it is one of the version that must go. Once: what cannot be undone stays as it is, for people to
 // look at.

@@ -52,4 +52,11 @@ tools::SystemEdits shown_system(const vm::Controller& controller,
   return edits;
 }
 
+std::string undone_text(const std::string& edit, const std::string& without,
+                        const std::string& why) {
+  std::string text = "edit " + edit;
+  if (!without.empty()) text += ", without FB_Exit of " + without;
+  return why.empty() ? text : text + ": " + why;
+}
+
 }  // namespace stvm

@@ -19,4 +19,8 @@ tools::SystemEdits shown_system(const vm::Controller& controller,
 // "Main.pump, Main.tank and 3 more": of an image, by their numbers.
 std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids);
 
+// Of an edit that was taken back, for the journal. `without`: instances whose FB_Exit did not run.
+std::string undone_text(const std::string& edit, const std::string& without,
+                        const std::string& why);
+
 }  // namespace stvm
