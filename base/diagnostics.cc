@@ -22,14 +22,14 @@ constexpr DiagnosticRow kRows[] = {
 constexpr uint32_t kRowCount = sizeof kRows / sizeof kRows[0];
 
 // The enumeration is made of the table by another way (scripts/enumerations.cmake).
-constexpr DiagnosticCode kCodes[] = {
+constexpr DiagnosticCode kDiagnosticsInOrder[] = {
 #define DIAGNOSTIC(id, code, severity, title, help) DiagnosticCode::id,
 #include "base/diagnostics.def"
 #undef DIAGNOSTIC
 };
 static_assert([] {
   for (uint32_t i = 0; i < kRowCount; ++i) {
-    if (static_cast<uint32_t>(kCodes[i]) != i) return false;
+    if (static_cast<uint32_t>(kDiagnosticsInOrder[i]) != i) return false;
   }
   return true;
 }());

@@ -18,14 +18,14 @@ constexpr Row kRefusals[] = {
 };
 
 // The enumeration is made of the table by another way (scripts/enumerations.cmake).
-constexpr Refusal kCodes[] = {
+constexpr Refusal kRefusalsInOrder[] = {
 #define REFUSAL(id, code, title, help) Refusal::id,
 #include "base/refusals.def"
 #undef REFUSAL
 };
 static_assert([] {
-  for (size_t i = 0; i < std::size(kCodes); ++i) {
-    if (static_cast<size_t>(kCodes[i]) != i) return false;
+  for (size_t i = 0; i < std::size(kRefusalsInOrder); ++i) {
+    if (static_cast<size_t>(kRefusalsInOrder[i]) != i) return false;
   }
   return true;
 }());
