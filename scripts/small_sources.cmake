@@ -64,7 +64,9 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/types/inside.cc ${CMAKE_SOURCE_DIR}/ir/types/location.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_calls.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/call_needs.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_tables.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_tries.cc
-     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_memory.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_memory.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_types.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/pack_sources.cc ${CMAKE_SOURCE_DIR}/ir/types/reach.cc
+     ${CMAKE_SOURCE_DIR}/ir/types/same_value_type.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_instances.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/image_queries.cc ${CMAKE_SOURCE_DIR}/vm/runtime/live_copy.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/mailbox.cc ${CMAKE_SOURCE_DIR}/vm/runtime/event_ring.cc

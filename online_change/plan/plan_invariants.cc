@@ -12,8 +12,12 @@ const char* broken_form(const Plan& plan, const UpdateStep& step) {
                            step.kind == StepKind::kGather;
   if (step.count == 0 || step.size == 0) return "a step writes something";
   if (step.early && step.kind != StepKind::kInitialise) return "only initial values come early";
-  if (!makes_bytes && !step.bytes.empty()) return "what is copied or converted has no bytes";
-  if (!step.bytes.empty() && step.bytes.size() != step.total()) return "a step has all its bytes";
+  // A conversion holds those of an edit that is taken out, which are other ones (plan.h).
+  const bool may_hold = makes_bytes || step.kind == StepKind::kConvert;
+  if (!may_hold && !step.bytes.empty()) return "what is copied has no bytes";
+  if (makes_bytes && !step.bytes.empty() && step.bytes.size() != step.total()) {
+    return "a step has all its bytes";
+  }
   if (step.fate != kNoFate && step.fate >= plan.fates.size()) return "a fate is a row";
   if (step.kind == StepKind::kMigrate && step.from >= plan.calls.size()) return "a call is there";
   if (step.kind == StepKind::kGather && step.from >= plan.gathers.size()) return "a row is there";
