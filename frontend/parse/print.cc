@@ -1,36 +1,9 @@
 #include "frontend/parse/printer.h"
+#include "frontend/parse/section_word.h"
 
 namespace frontend {
 
 namespace {
-
-const char* section_name(VarSection section) {
-  switch (section) {
-    case VarSection::kLocal:
-      return "VAR";
-    case VarSection::kInput:
-      return "VAR_INPUT";
-    case VarSection::kOutput:
-      return "VAR_OUTPUT";
-    case VarSection::kInOut:
-      return "VAR_IN_OUT";
-    case VarSection::kTemp:
-      return "VAR_TEMP";
-    case VarSection::kExternal:
-      return "VAR_EXTERNAL";
-    case VarSection::kGlobal:
-      return "VAR_GLOBAL";
-    case VarSection::kStatic:
-      return "VAR_STAT";
-    case VarSection::kInstance:
-      return "VAR_INST";
-    case VarSection::kAccess:
-      return "VAR_ACCESS";
-    case VarSection::kConfig:
-      return "VAR_CONFIG";
-  }
-  return "";
-}
 
 const char* pou_name(PouKind kind) {
   switch (kind) {
@@ -168,7 +141,7 @@ void Printer::attributes(Range32 of) {
 
 void Printer::block(const VarBlock& block) {
   attributes(block.attributes);
-  std::string head = section_name(block.section);
+  std::string head = section_word(block.section);
   if (block.constant) head += " CONSTANT";
   if (block.retain) head += " RETAIN";
   if (block.non_retain) head += " NON_RETAIN";

@@ -8,7 +8,7 @@
 
 namespace frontend::questions {
 
-// Of one source file, whose text outlives it and is read once.
+// The comments of one source file. The text is read once, and outlives this.
 class Documentation {
  public:
   explicit Documentation(std::string_view text);

@@ -39,7 +39,14 @@ void Indexer::find_specs() {
     if (!named && kind != SpecKind::kEnum) continue;
     const ir::TypeId type =
         i < sema_.facts.specs.size() ? sema_.facts.specs[i].use.type : ir::TypeId();
-    if (type.valid()) specs_.emplace(type, SpecId(i));
+    if (!type.valid() || !specs_.emplace(type, SpecId(i)).second) continue;
+    NameMap<Name>& members = members_[type];
+    for (const VarDecl& field : tree_.specs[i].fields) {
+      for (const Name& name : field.names) members.emplace(name.text, name);
+    }
+    for (const Enumerator& one : tree_.specs[i].enumerators) {
+      members.emplace(one.name.text, one.name);
+    }
   }
   const auto& variables = sema_.declared.variables;
   for (uint32_t i = 0; i < variables.size(); ++i) {
@@ -155,12 +162,18 @@ void Indexer::steps(const Chart& chart) {
     for (const Name& step : transition.from) add(step.span, named(step), Role::kRead);
     for (const Name& step : transition.to) add(step.span, named(step), Role::kRead);
     if (transition.name.empty()) continue;
-    Symbol symbol;
-    symbol.kind = SymbolKind::kTransition;
-    symbol.name = std::string(transition.name.text);
-    symbol.defined = transition.name.span;
-    add(symbol.defined, symbol, Role::kDeclared);
+    plain_declaration(SymbolKind::kTransition, transition.name);
   }
+}
+
+// Of what has a name and nothing more that is asked.
+Symbol Indexer::plain_declaration(SymbolKind kind, const Name& name) {
+  Symbol symbol;
+  symbol.kind = kind;
+  symbol.name = std::string(name.text);
+  symbol.defined = name.span;
+  add(symbol.defined, symbol, Role::kDeclared);
+  return symbol;
 }
 
 void Indexer::configuration(const ConfigDecl& config) {
@@ -169,22 +182,13 @@ void Indexer::configuration(const ConfigDecl& config) {
     blocks(resource.globals);
     NameMap<Symbol> tasks;
     for (const TaskDecl& task : resource.tasks) {
-      Symbol symbol;
-      symbol.kind = SymbolKind::kTask;
-      symbol.name = std::string(task.name.text);
-      symbol.defined = task.name.span;
-      add(symbol.defined, symbol, Role::kDeclared);
-      tasks.emplace(task.name.text, std::move(symbol));
+      tasks.emplace(task.name.text, plain_declaration(SymbolKind::kTask, task.name));
       expression(task.interval);
       expression(task.priority);
       expression(task.single);
     }
     for (const ProgramDecl& program : resource.programs) {
-      Symbol symbol;
-      symbol.kind = SymbolKind::kInstance;
-      symbol.name = std::string(program.name.text);
-      symbol.defined = program.name.span;
-      add(symbol.defined, symbol, Role::kDeclared);
+      plain_declaration(SymbolKind::kInstance, program.name);
       const PouInfo* type = sema_.declared.find_pou(program.type.text);
       if (type != nullptr) add(program.type.span, pou_symbol(*type), Role::kRead);
       if (const auto task = tasks.find(program.task.text); task != tasks.end()) {

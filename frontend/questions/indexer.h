@@ -29,6 +29,7 @@ class Indexer : private Walker {
   void initial(ExprId init, ir::TypeId type);
   void steps(const Chart& chart);
   void configuration(const ConfigDecl& config);
+  Symbol plain_declaration(SymbolKind kind, const Name& name);
   void visit(const Spec& spec, SpecId id) override;
   VarId declared(const Name& name) const;
 
@@ -46,6 +47,7 @@ class Indexer : private Walker {
   // --- symbols (symbols.cc)
   std::optional<Symbol> variable_symbol(VarId id) const;
   Symbol pou_symbol(const PouInfo& info) const;
+  const Name* member_named(ir::TypeId type, std::string_view name) const;
   std::optional<Symbol> field_symbol(ir::TypeId structure, const Name& name) const;
   std::optional<Symbol> enumerator_symbol(ir::TypeId type, std::string_view name) const;
   std::optional<Symbol> type_symbol(std::string_view name) const;
@@ -57,8 +59,9 @@ class Indexer : private Walker {
   PouScope scope_;  // of what is walked
   Index out_;
   std::map<std::pair<uint32_t, const void*>, uint32_t> numbers_;  // by place, or by built-in row
-  std::unordered_map<ir::TypeId, SpecId> specs_;   // of structures, unions and enumerations
-  std::unordered_map<uint32_t, VarId> variables_;  // by the place of their name
+  std::unordered_map<ir::TypeId, SpecId> specs_;           // of structures, unions and enumerations
+  std::unordered_map<ir::TypeId, NameMap<Name>> members_;  // likewise: fields and enumerators
+  std::unordered_map<uint32_t, VarId> variables_;          // by the place of their name
   std::unordered_map<const PouDecl*, const PouInfo*> infos_;
 };
 

@@ -1,34 +1,12 @@
 #include "frontend/questions/questions.h"
-#include "frontend/sema/objects.h"
 
+#include "frontend/parse/section_word.h"
 #include "frontend/questions/walk.h"
+#include "frontend/sema/objects.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend::questions {
 namespace {
-
-std::string_view section_word(VarSection section) {
-  switch (section) {
-    case VarSection::kInput:
-      return "VAR_INPUT";
-    case VarSection::kOutput:
-      return "VAR_OUTPUT";
-    case VarSection::kInOut:
-      return "VAR_IN_OUT";
-    case VarSection::kTemp:
-      return "VAR_TEMP";
-    case VarSection::kExternal:
-      return "VAR_EXTERNAL";
-    case VarSection::kGlobal:
-      return "VAR_GLOBAL";
-    case VarSection::kStatic:
-      return "VAR_STAT";
-    case VarSection::kInstance:
-      return "VAR_INST";
-    default:
-      return "VAR";
-  }
-}
 
 std::string_view head_word(SymbolKind kind) {
   switch (kind) {

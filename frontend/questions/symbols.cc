@@ -118,41 +118,41 @@ Symbol Indexer::pou_symbol(const PouInfo& info) const {
   return symbol;
 }
 
+const Name* Indexer::member_named(ir::TypeId type, std::string_view name) const {
+  const auto members = members_.find(type);
+  if (members == members_.end()) return nullptr;
+  const auto found = members->second.find(name);
+  return found == members->second.end() ? nullptr : &found->second;
+}
+
 std::optional<Symbol> Indexer::field_symbol(ir::TypeId structure, const Name& name) const {
+  if (const Name* const own = member_named(structure, name.text)) {
+    Symbol symbol;
+    symbol.kind = SymbolKind::kField;
+    symbol.name = sema_.report.type_text(structure) + '.' + std::string(own->text);
+    symbol.defined = own->span;
+    const StructureField* place = sema_.declared.find_field(structure, own->text);
+    if (place != nullptr && place->bit < 0) {
+      symbol.type = sema_.program.types[structure].members[place->member].type;
+    }
+    return symbol;
+  }
   const auto found = specs_.find(structure);
   if (found == specs_.end()) return std::nullopt;
   const Spec& spec = tree_[found->second];
-  for (const VarDecl& field : spec.fields) {
-    for (const Name& own : field.names) {
-      if (!ir::same_name(own.text, name.text)) continue;
-      Symbol symbol;
-      symbol.kind = SymbolKind::kField;
-      symbol.name = sema_.report.type_text(structure) + '.' + std::string(own.text);
-      symbol.defined = own.span;
-      const StructureField* place = sema_.declared.find_field(structure, own.text);
-      if (place != nullptr && place->bit < 0) {
-        symbol.type = sema_.program.types[structure].members[place->member].type;
-      }
-      return symbol;
-    }
-  }
   if (spec.kind != SpecKind::kStruct || !spec.element.valid()) return std::nullopt;
   return field_symbol(sema_.facts.specs[spec.element.index].use.type, name);  // of its base
 }
 
 std::optional<Symbol> Indexer::enumerator_symbol(ir::TypeId type, std::string_view name) const {
-  const auto found = specs_.find(type);
-  if (found == specs_.end()) return std::nullopt;
-  for (const Enumerator& enumerator : tree_[found->second].enumerators) {
-    if (!ir::same_name(enumerator.name.text, name)) continue;
-    Symbol symbol;
-    symbol.kind = SymbolKind::kEnumerator;
-    symbol.name = sema_.report.type_text(type) + '#' + std::string(enumerator.name.text);
-    symbol.defined = enumerator.name.span;
-    symbol.type = type;
-    return symbol;
-  }
-  return std::nullopt;
+  const Name* const own = member_named(type, name);
+  if (own == nullptr) return std::nullopt;
+  Symbol symbol;
+  symbol.kind = SymbolKind::kEnumerator;
+  symbol.name = sema_.report.type_text(type) + '#' + std::string(own->text);
+  symbol.defined = own->span;
+  symbol.type = type;
+  return symbol;
 }
 
 std::optional<Symbol> Indexer::type_symbol(std::string_view name) const {

@@ -52,4 +52,7 @@ grep -q 'did you mean `Counter`' err || fail "no suggestion: $(cat err)"
 expect 2 stc xref plant --at plant/main.st:99:1
 grep -q 'no file of the project has the place' err || fail "$(cat err)"
 expect 2 stc xref plant --at plant/main.st
+for place in 4294967299:1 3:4294967297 -1:1 3x:1 3: :1 0:1 3:0 3:99999999999999999999; do
+  expect 2 stc xref plant --at "plant/main.st:$place"
+done
 expect 2 stc xref plant --at plant/main.st:3:1 --name c

@@ -6,6 +6,7 @@
 #include "frontend/lex/characters.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/network/comments.h"
+#include "frontend/parse/section_word.h"
 #include "ir/types/types.h"
 
 namespace stc {
@@ -154,11 +155,8 @@ std::string comments_of(std::string_view text) {
 }
 
 std::string section_text(const frontend::VarBlock& block) {
-  static constexpr const char* kSections[] = {
-      "VAR",        "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP",  "VAR_EXTERNAL",
-      "VAR_GLOBAL", "VAR_STAT",  "VAR_INST",   "VAR_ACCESS", "VAR_CONFIG"};
   static constexpr const char* kAccess[] = {"", " PUBLIC", " PRIVATE", " PROTECTED", " INTERNAL"};
-  std::string out = kSections[static_cast<size_t>(block.section)];
+  std::string out = frontend::section_word(block.section);
   out += kAccess[static_cast<size_t>(block.access)];
   if (block.constant) out += " CONSTANT";
   if (block.retain) out += " RETAIN";

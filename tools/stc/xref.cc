@@ -1,6 +1,7 @@
 // stc xref: what names mean, where they are declared and who uses them.
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
+#include <optional>
 
 #include "frontend/questions/compilation.h"
 #include "frontend/questions/questions.h"
@@ -34,6 +35,13 @@ struct Answer {
 
 base::Error wrong(const std::string& text) { return {base::Refusal::kUsage, "xref: " + text}; }
 
+std::optional<uint32_t> number_of(std::string_view text) {
+  uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
 // FILE:LINE:COLUMN
 base::Result<base::SourcePos> place_of(const Questions& questions, const std::string& text) {
   const size_t last = text.rfind(':');
@@ -41,9 +49,10 @@ base::Result<base::SourcePos> place_of(const Questions& questions, const std::st
   if (first == std::string::npos || first == last) {
     return wrong("`--at " + text + "` names no place; write FILE:LINE:COLUMN");
   }
-  const auto line = static_cast<uint32_t>(std::strtoul(text.c_str() + first + 1, nullptr, 10));
-  const auto column = static_cast<uint32_t>(std::strtoul(text.c_str() + last + 1, nullptr, 10));
-  const base::SourcePos pos = questions.place(text.substr(0, first), line, column);
+  const auto line = number_of(std::string_view(text).substr(first + 1, last - first - 1));
+  const auto column = number_of(std::string_view(text).substr(last + 1));
+  if (!line || !column) return wrong("`--at " + text + "`: lines and columns are numbers from 1");
+  const base::SourcePos pos = questions.place(text.substr(0, first), *line, *column);
   if (!pos.valid()) return wrong("no file of the project has the place `" + text + "`");
   return pos;
 }

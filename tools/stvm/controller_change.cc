@@ -245,7 +245,10 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 base::Result<base::Bytes> ControllerService::undo(const vm::Request& request) {
   base::Status newest = check_newest(request);
   if (!newest.ok()) return newest.error();
-  const bool skips = request.names.size() > 1 && request.names[1] == vm::kWithoutExit;
+  const bool skips = request.names.size() == 2 && request.names[1] == vm::kWithoutExit;
+  if (request.names.size() > 1 && !skips) {
+    return base::Error{base::Refusal::kProtocol, "an undo in a way that is not known here"};
+  }
   return undo_now({}, skips ? Exits::kSkip : Exits::kRun);
 }
 
