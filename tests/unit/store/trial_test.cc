@@ -108,6 +108,14 @@ TEST(Trial, X4_case34_AnUndoWithoutFbExitIsAskedForAndNoted) {
   EXPECT_EQ(page->system[0].kind, "FB_Exit");
   EXPECT_EQ(page->system[0].name, "Main.b");
   EXPECT_EQ(rig.plc.status().change, "trial");
+  // A way that only a newer controller knows is not taken for the usual one.
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"E1", "in another way"}, {"E1", vm::kWithoutExit, "twice"}}) {
+    const base::Status other = rig.plc.ask({.command = vm::Command::kUndo, .names = names});
+    ASSERT_FALSE(other.ok());
+    EXPECT_EQ(other.error().refusal, base::Refusal::kProtocol);
+    EXPECT_EQ(rig.plc.status().change, "trial");
+  }
   ASSERT_TRUE(rig.plc.ask({.command = vm::Command::kUndo, .names = {"E1", vm::kWithoutExit}}).ok());
   expect_undone(rig, "edit E1, without FB_Exit of Main.b");
   // After a power cut the version before boots, and what was left out is still noted.
