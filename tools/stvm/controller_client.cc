@@ -174,13 +174,15 @@ base::Result<base::Bytes> ControllerClient::image_parts(vm::Request request,
   }
 }
 
-// Whatever is no whole entry ends it: nothing else comes from a journal.
+// Whatever is no whole entry ends it: nothing else comes from a journal. Numbers rise from page to
+// page: a controller that sends one page again and again is not listened to.
 base::Result<bool> ControllerClient::journal_page(const vm::Request& request,
                                                   std::vector<online_change::JournalEntry>& all) {
   base::Result<base::Bytes> body = call(request);
   if (!body.ok()) return body.error();
   const size_t bytes = online_change::kSectorBytes;
   if (body->size() % bytes != 0 || all.size() > kMaxEvents) return endless();
+  const size_t before = all.size();
   for (size_t at = 0; at < body->size(); at += bytes) {
     auto entry = online_change::decode_entry(base::ByteSpan(*body).subspan(at, bytes));
     if (!entry) return base::Error{base::Refusal::kProtocol, "message not understood: journal"};
@@ -189,7 +191,9 @@ base::Result<bool> ControllerClient::journal_page(const vm::Request& request,
     }
     all.push_back(std::move(*entry));
   }
-  return !body->empty();
+  const bool more = all.size() != before;
+  if (more && before != 0 && all.back().sequence <= all[before - 1].sequence) return endless();
+  return more;
 }
 
 base::Result<std::vector<online_change::JournalEntry>> ControllerClient::journal() {
@@ -210,7 +214,6 @@ base::Result<std::vector<online_change::JournalEntry>> ControllerClient::events(
     base::Result<bool> more = journal_page(request, all);
     if (!more.ok()) return more.error();
     if (!*more) return all;
-    if (all.back().sequence < request.offset) return endless();
     request.offset = all.back().sequence + 1;
   }
 }

@@ -301,8 +301,9 @@ TEST(LogOutput, R10_KnowsTheJournalByDeviceAndInode) {
 // A controller that never comes to an end of its events, or goes back to those of before.
 class Endless : public vm::Transport {
  public:
-  explicit Endless(uint64_t step) : step_(step) {}
+  Endless(uint64_t step, int& pages) : step_(step), pages_(pages) {}
   base::Result<base::Bytes> exchange(base::ByteSpan) override {
+    ++pages_;
     base::Bytes page;
     for (int i = 0; i < 1000; ++i) {
       JournalEntry entry = event(Event::kSet);
@@ -316,15 +317,20 @@ class Endless : public vm::Transport {
 
  private:
   uint64_t step_;
+  int& pages_;
   uint64_t number_ = 7;
 };
 
 TEST(EventClient, R10_EventsWithoutEndAreNotUnderstood) {
   for (const uint64_t step : {1, 0}) {
-    ControllerClient client(std::make_unique<Endless>(step));
-    const auto events = client.events(0);
-    ASSERT_FALSE(events.ok());
-    EXPECT_EQ(events.error().refusal, base::Refusal::kProtocol);
+    for (const bool journal : {false, true}) {
+      int pages = 0;
+      ControllerClient client(std::make_unique<Endless>(step, pages));
+      const auto events = journal ? client.journal() : client.events(0);
+      ASSERT_FALSE(events.ok());
+      EXPECT_EQ(events.error().refusal, base::Refusal::kProtocol);
+      EXPECT_EQ(pages, step == 0 ? 2 : 67) << "a page that goes back is the last one";
+    }
   }
 }
 
