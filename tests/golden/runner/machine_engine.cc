@@ -110,7 +110,7 @@ class MachineEngine : public Engine {
 
   base::Result<std::string> scan() override {
     // Those of FB_Init at the start belong to the first scan.
-    size_t traps_before = std::exchange(scanned_, true) ? controller_->traps().size() : 0;
+    size_t traps_before = scans_++ == 0 ? 0 : controller_->traps().size();
     controller_->cycle();
     const vm::Traps& traps = controller_->traps();
     if (traps.size() > traps_before) {
@@ -118,9 +118,7 @@ class MachineEngine : public Engine {
       return std::string(ir::trap_name(first.trap.kind)) + " " + first.text.pou + ":" +
              std::to_string(first.text.line);
     }
-    bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kAlternating ||
-                tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
-    if (!hard || change_->state() == online_change::State::kTrial) return std::string();
+    if (!hard_change_is_due()) return std::string();
     base::Status switched = tier_ == Tier::kStandby ? late_change() : hard_change();
     if (!switched.ok()) return switched.error();
     return std::string();
@@ -217,6 +215,18 @@ class MachineEngine : public Engine {
     return done.ok() ? change_->arm(allow_loss) : base::Status(done.error());
   }
 
+  // After every scan; in a long run after each of the first, and after some of the others, which
+  // meet every phase of what repeats. One that is armed is switched to at the next scan.
+  bool hard_change_is_due() const {
+    constexpr uint64_t kEach = 256;
+    constexpr uint64_t kThen = 7;
+    const bool hard = tier_ == Tier::kIdentity || tier_ == Tier::kAlternating ||
+                      tier_ == Tier::kMoveAll || tier_ == Tier::kStandby;
+    const online_change::State state = change_->state();
+    if (!hard || state == online_change::State::kTrial) return false;
+    return scans_ <= kEach || scans_ % kThen == 0 || state == online_change::State::kArmed;
+  }
+
   // The same program under another name: without that, a change to itself would be none.
   base::Result<base::Bytes> hard_image() const {
     if (tier_ != Tier::kMoveAll) {
@@ -276,7 +286,7 @@ class MachineEngine : public Engine {
   std::vector<const Program*> previous_;  // of each edit on trial
   vm::VirtualClock clock_;
   NoDevices devices_;
-  bool scanned_ = false;
+  uint64_t scans_ = 0;
   uint64_t delayed_ = 0;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<online_change::Change> change_;
