@@ -7,15 +7,12 @@
 #include <cstdio>
 
 #include "tests/unit/store/history.h"
+#include "tests/unit/store/sanitized.h"
 
 namespace history {
 namespace {
 
-#ifdef STC_SANITIZED_HEAP
-constexpr uint64_t kStates = 50'000;  // each takes twenty times as long
-#else
-constexpr uint64_t kStates = 1'000'000;
-#endif
+constexpr uint64_t kStates = kOneOf == 1 ? 1'000'000 : 10'000;
 
 class Cuts {
  public:

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
@@ -12,21 +14,42 @@
 #include "online_change/package/package.h"
 
 namespace plc {
+namespace {
 
-ir::VerifiedImage build(const std::string& source, const ir::Image* base) {
+struct Compiled {
+  ir::Program program;
+  std::vector<ir::Object> objects;
+};
+
+Compiled compile(const std::string& source) {
   base::SourceMap sources;
   sources.add("test.st", source);
   base::Diagnostics diagnostics;
   std::optional<ir::Program> program = frontend::compile(sources, {}, diagnostics);
   base::check(program.has_value(),
               base::render(diagnostics, sources, base::DiagnosticFormat::kText, false).c_str());
-  std::vector<ir::Object> objects;
-  for (uint32_t i = 0; i < program->pous.size(); ++i) {
-    objects.push_back(*ir::lower(*program, ir::PouId(i)));
+  Compiled out{std::move(*program), {}};
+  for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
+    out.objects.push_back(*ir::lower(out.program, ir::PouId(i)));
   }
+  return out;
+}
+
+// Tests build the same few programs thousands of times: each is compiled once.
+const Compiled& compiled(const std::string& source) {
+  static std::map<std::string, Compiled> known;
+  const auto found = known.find(source);
+  return found != known.end() ? found->second
+                              : known.emplace(source, compile(source)).first->second;
+}
+
+}  // namespace
+
+ir::VerifiedImage build(const std::string& source, const ir::Image* base) {
+  const Compiled& of = compiled(source);
   linker::Options options;
   options.base = base;
-  base::Result<ir::Image> image = linker::link(*program, objects, options);
+  base::Result<ir::Image> image = linker::link(of.program, of.objects, options);
   base::check(image.ok(), image.ok() ? "" : base::to_string(image.error()).c_str());
   base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(*image));
   base::check(verified.ok(), "the test program is verified");
@@ -51,8 +74,7 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given, bool creat
   controller_ = std::move(*controller);
   service_ = std::make_unique<stvm::ControllerService>(
       *controller_, clock_, *store_, *this,
-      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault},
-      [] { return int64_t{2}; });
+      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault}, [] { return int64_t{2}; });
   service_->resume(boot_->edits);
   service_->asked_by("tester", 1);
   return base::Ok{};
@@ -131,8 +153,7 @@ base::Status Plc::stage(const ir::VerifiedImage& next) {
   return done.ok() ? ask(std::move(stage)) : done;
 }
 
-base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags,
-                         const std::string& health) {
+base::Status Plc::change(const ir::VerifiedImage& next, uint32_t flags, const std::string& health) {
   vm::Request change{.command = vm::Command::kSwitch};
   change.flags = flags | vm::kAllowOverrun;
   if (!health.empty()) change.names = {health};
