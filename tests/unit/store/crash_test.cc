@@ -46,6 +46,7 @@ class Cuts {
   }
 
   void look(const History& history, const sim::SimStorage& disk, int level) {
+    if (++boundaries_ % kOneOf != 0) return;
     choices_of(disk.dirty());
     const std::vector<sim::SimStorage::Choice> choices = choices_;
     for (const auto& choice : choices) try_one(history, disk.after_cut(choice), level);
@@ -86,6 +87,7 @@ class Cuts {
 
   std::mt19937_64 random_{1};
   std::vector<sim::SimStorage::Choice> choices_;
+  uint64_t boundaries_ = 0;
   uint64_t tried_ = 0;
   uint64_t failed_ = 0;
 };
