@@ -82,7 +82,6 @@ class Parser {
 
   // --- content.cc
   ir::SourceContent content_of(const Token* first, const PouDecl& pou) const;
-  void add_pragma(std::string& out, base::SourceSpan span) const;
 
   // --- attributes.cc
   Range32 take_attributes();
