@@ -103,7 +103,7 @@ void declare_all(Sema& sema) {
 }
 
 void lower_body(Sema& sema, uint32_t pou) {
-  if (sema.declared.pous[pou].id.valid()) Body(sema, pou).run();
+  if (sema.declared.pous[pou].id.valid()) write_body(sema, pou);
 }
 
 void check_uses(Sema& sema) {

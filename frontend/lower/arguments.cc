@@ -1,5 +1,5 @@
 // Arguments of POUs: which goes to which parameter.
-#include "frontend/lower/call.h"
+#include "frontend/lower/body.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/objects.h"
 

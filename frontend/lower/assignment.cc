@@ -41,7 +41,7 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
     return to;
   }
   ir::ValueId from = value(right, to->type);
-  if (traits_of(types(), to->type).boolean) counting_.power(from, left, span.begin);
+  if (traits_of(types(), to->type).boolean) body_.counting.power(from, left, span.begin);
   set_line(span);
   store(*to, from);
   return to;
@@ -64,7 +64,7 @@ ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::Sou
           "only BOOL variables can be");
     return condition;
   }
-  counting_.power(condition, left, span.begin);
+  body_.counting.power(condition, left, span.begin);
   set_line(span);
   ir::BlockId change = build_.new_block();
   ir::BlockId done = build_.new_block();

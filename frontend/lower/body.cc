@@ -8,43 +8,31 @@
 
 namespace frontend {
 
-Body::Body(Sema& sema, uint32_t pou)
-    : Body(sema, PouScope(sema.declared.pous[pou]), sema.declared.pous[pou], pou,
-           sema.program.pous[sema.declared.pous[pou].id.index]) {}
-
-Body::Body(Sema& sema, const PouScope& scope, PouInfo& info, uint32_t number, ir::Pou pou)
-    : Phase(sema, scope),
-      tree_(sema.tree),
-      info_(info),
-      pou_number_(number),
-      out_(std::move(pou)),
-      build_(out_) {}
-
 void Body::run() {
   const PouDecl& decl = *info_.decl;
   base::SourceLocation head = sema_.sources.locate(decl.span.begin);
-  out_.file = head.file;
-  out_.line = head.line;
-  lines_.begin(decl.span.begin, head.line);
-  if (info_.made == MadeCode::kNone) out_.content = decl.content;
+  body_.out.file = head.file;
+  body_.out.line = head.line;
+  body_.lines.begin(decl.span.begin, head.line);
+  if (info_.made == MadeCode::kNone) body_.out.content = decl.content;
   build_.set_line(head.line);
   initialise_locals();
   connect_inputs();
   detect_edges();
   mock_prologue();
   const bool written = info_.made == MadeCode::kNone && !info_.test && !info_.library;
-  if (written) counting_.begin(sema_.options.coverage, out_.name);
+  if (written) body_.counting.begin(sema_.options.coverage, body_.out.name);
   if (info_.test && decl.kind == PouKind::kProgram) activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
-  if (!info_.connections.empty()) exit_ = build_.new_block();
+  if (!info_.connections.empty()) body_.flow.exit = build_.new_block();
   if (info_.made == MadeCode::kStart) {
-    StartCode(*this).run();
+    ask<StartCode>().run();
   } else if (info_.made == MadeCode::kReset) {
-    PoolCode(*this).reset_method();
+    ask<PoolCode>().reset_method();
   } else if (info_.made == MadeCode::kLeave) {
-    PoolCode(*this).leave_method();
+    ask<PoolCode>().leave_method();
   } else if (decl.chart != kNoChart) {
-    ChartBody(*this, tree_.charts[decl.chart]).run();
+    ChartBody(body_, scope_, tree_.charts[decl.chart]).run();
   } else if (info_.teardown != nullptr) {
     try_finally([&] { statements(decl.body); }, info_.teardown->body, decl.span);
   } else {
@@ -56,31 +44,24 @@ void Body::run() {
       (decl.is_abstract || sema_.declared.pous[info_.owner].decl->kind == PouKind::kInterface);
   if (prototype && build_.reachable()) build_.trap(ir::TrapKind::kReference);
   set_line({decl.span.end, decl.span.end});
-  if (exit_.valid()) {
-    if (build_.reachable()) build_.jump(exit_);
-    build_.start(exit_);
+  if (body_.flow.exit.valid()) {
+    if (build_.reachable()) build_.jump(body_.flow.exit);
+    build_.start(body_.flow.exit);
     connect_outputs();
   }
   build_.finish();
-  sema_.program.pous[info_.id.index] = std::move(out_);
+  sema_.program.pous[info_.id.index] = std::move(body_.out);
+}
+
+void write_body(Sema& sema, uint32_t pou) {
+  PouInfo& info = sema.declared.pous[pou];
+  Lowering body(sema, info, pou, sema.program.pous[info.id.index]);
+  Body(body, PouScope(info)).run();
 }
 
 void Body::leave() {
   leave_loops();
   go({}, 0);
-}
-
-// Is it outside of the POU's own text? The statements may be of a later one.
-bool Body::is_outside(base::SourcePos pos) const {
-  const PouDecl& decl = *info_.decl;
-  const auto in = [pos](base::SourceSpan span) { return !(pos < span.begin) && pos <= span.end; };
-  return !in(decl.span) && !(decl.code.begin.valid() && in(decl.code));
-}
-
-void Body::set_line(base::SourceSpan span) {
-  if (!span.begin.valid()) return;
-  if (sema_.log != nullptr && is_outside(span.begin)) sema_.log->other_lines = true;
-  build_.set_line(lines_.line_of(span.begin));
 }
 
 ir::ValueId ValueCode::zero(ir::TypeId type) {
@@ -119,7 +100,7 @@ void Body::initialise(const ir::Place& where, const Variable& variable) {
   }
   if (!types().is_scalar(variable.type)) {
     build_.init(where, variable.init);
-    StartCode(*this).bind_references(where, variable.type, variable.init);
+    ask<StartCode>().bind_references(where, variable.type, variable.init);
     return;
   }
   ir::ConstId init = variable.init.valid() ? variable.init : types()[variable.type].init;

@@ -5,50 +5,24 @@
 // so that one run reports all errors; the result is then thrown away.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "frontend/lower/builder.h"
-#include "frontend/lower/counting.h"
+#include "frontend/lower/body_phase.h"
+#include "frontend/lower/call.h"
 #include "frontend/lower/handles.h"
-#include "frontend/lower/line_finder.h"
-#include "frontend/lower/target.h"
-#include "frontend/lower/value_code.h"
-#include "frontend/sema/phase.h"
 #include "stdlib/native/natives.h"
 
 namespace frontend {
 
-inline ir::Step step_to(ir::StepKind kind, uint32_t index = 0) {
-  ir::Step step;
-  step.kind = kind;
-  step.index = index;
-  return step;
-}
-
-class Body : public Phase {
+class Body : public BodyPhase {
  public:
-  Body(Sema& sema, uint32_t pou);
+  using BodyPhase::BodyPhase;
+
   void run();
-
-  // The value of `expr`, which is known, by running its code here and now.
-  static std::optional<Constant> evaluate(Sema& sema, const PouScope& scope, ExprId expr,
-                                          ir::TypeId context);
-
- private:
-  friend class ChartBody;  // sequential function charts (chart.h)
-  friend class StartCode;  // __START (start_code.h)
-  friend class PoolCode;   // __NEW, __DELETE (pool_code.h)
-
-  Body(Sema& sema, const PouScope& scope, PouInfo& info, uint32_t number, ir::Pou pou);
-
-  // --- known values (constant_evaluation.cc)
-  bool is_known(const Note& note) const {
-    return note.constant || (evaluating_ && note.known != Known::kNo);
-  }
+  std::optional<Constant> evaluate(ExprId id, ir::TypeId context);
   std::optional<Constant> run_alone(uint32_t local, base::SourceSpan span);
   // --- statements (statement.cc, for.cc, case.cc, assignment.cc)
   void statements(Range32 list);
@@ -73,17 +47,6 @@ class Body : public Phase {
   void check_end(ExprId condition, bool goes_on);
 
   // --- __TRY (try.cc)
-  struct TryScope {    // of a body that the current statement stands in
-    struct Exit {      // a way out that goes on after the __FINALLY
-      ir::BlockId to;  // invalid: out of the POU
-      size_t tries;    // scopes that are around it
-    };
-    ir::BlockId outer;  // the handler around it
-    ir::BlockId finally;
-    ir::Place where;  // trap kind, or kTrapCount + number of an exit
-    std::vector<Exit> exits;
-    bool eno = false;  // of a call with ENO: string functions out of range trap
-  };
   void try_statement(const Stmt& stmt);
   void try_finally(const std::function<void()>& body, Range32 finally_body, base::SourceSpan span);
   void try_catch(const Stmt& stmt);
@@ -93,8 +56,7 @@ class Body : public Phase {
   void go(ir::BlockId to, size_t tries);
 
   // --- JMP (jump.cc)
-  using Labels = NameMap<ir::BlockId>;
-  Labels labels_of(Range32 list);
+  Flow::Labels labels_of(Range32 list);
   void jump(const Stmt& stmt);
   void label(const Stmt& stmt);
 
@@ -132,7 +94,6 @@ class Body : public Phase {
   ir::Place variable_place(VarId id);
   ir::Place view_place(const AddressView& view);
   ir::Place view_place(ExprId id);
-  ir::Place member_variable_place(const Variable& variable);
   ir::Place place(ExprId expr);
   ir::Place raw_place(ExprId expr);
   ir::Place member_place(const Expr& expr);
@@ -140,9 +101,6 @@ class Body : public Phase {
   ir::Place index_place(const Expr& expr);
   ir::Place bit_word_place(ExprId structure, const Note& part);
   ir::Place constant_place(ExprId expr);
-  ir::Place global_place(uint32_t member);
-  ir::Place local_place(uint32_t local);
-  ir::Place temporary_place(ir::TypeId type);
   void note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span);
   void note_outer_use(VarId global, bool written, base::SourceSpan span);
   std::optional<Target> target(ExprId expr);
@@ -217,7 +175,6 @@ class Body : public Phase {
   uint64_t default_bits(ir::TypeId type) const;
 
   // --- calls (call*.cc, arguments.cc)
-  struct Binding;
   bool bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings);
   bool bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings);
   bool bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
@@ -233,13 +190,8 @@ class Body : public Phase {
   void take_outputs(std::vector<Binding>& bindings,
                     const std::function<ir::Place(const Variable&)>& place_of);
   void call_instance(const Expr& call, uint32_t pou);
-  // The function's scalar result, or its place in a temporary.
-  struct Result {
-    ir::ValueId value;
-    ir::Place place;
-  };
-  Result call_function(const Expr& call, const Callee& callee, bool wants_result);
-  Result result_of(const PouInfo& callee);
+  CallResult call_function(const Expr& call, const Callee& callee, bool wants_result);
+  CallResult result_of(const PouInfo& callee);
   void call_base(const Expr& call, uint32_t pou);
   ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
   void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
@@ -257,8 +209,8 @@ class Body : public Phase {
   void prepare_receiver(const PouInfo& method, Receiver& receiver);
   void emit_method_call(const PouInfo& method, const Receiver& receiver);
   const MemberCode& property_code(ExprId id);
-  Result get_property(uint32_t getter, Receiver receiver);
-  Result read_property(ExprId id);
+  CallResult get_property(uint32_t getter, Receiver receiver);
+  CallResult read_property(ExprId id);
   std::optional<Target> property_target(ExprId id);
   void set_property(const Target& target, std::optional<ir::ValueId> value);
   void settle(const Target& target);
@@ -315,44 +267,13 @@ class Body : public Phase {
   void detect_edges();
   void connect_inputs();
   void connect_outputs();
+  void connect_input(const Target& input, const Arg& arg);
+  void connect_output(const Variable& output, const Arg& arg);
   void leave();
   void initialise(const ir::Place& where, const Variable& variable);
-  void set_line(base::SourceSpan span);
-  bool is_outside(base::SourcePos pos) const;
-  const ir::TypeTable& types() const { return sema_.program.types; }
-  ir::Scalar scalar(ir::TypeId type) const { return types().scalar(type); }
-  ir::TypeId elementary(ir::Kind kind) const { return types().elementary(kind); }
-  bool wide(ir::TypeId type) const { return types()[type].kind == ir::Kind::kWstring; }
-
-  struct Loop {
-    ir::BlockId again;
-    ir::BlockId exit;
-    size_t tries;  // that are around it
-    bool left;     // by EXIT, RETURN or JMP in its body
-  };
-  struct LabelList {
-    Labels labels;
-    size_t tries;
-  };
-
-  const Tree& tree_;
-  PouInfo& info_;
-  uint32_t pou_number_;
-  ir::Pou out_;
-  Builder build_;
-  LineFinder lines_{sema_.sources};
-  Counting counting_{build_, tree_, info_};
-  ValueCode code_{build_, sema_.program.types, sema_.options.dialect};
-  std::vector<Loop> loops_;
-  ir::BlockId exit_;               // what RETURN goes to; invalid: out of the POU
-  std::vector<LabelList> labels_;  // of the statement lists around the current statement
-  std::vector<TryScope> tries_;    // around the current statement
-  std::vector<VarId> for_variables_;
-  std::unordered_map<uint32_t, ir::ValueId> result_values_;  // by number of the kResult
-  std::unordered_map<uint32_t, ir::Place> result_places_;
-  bool evaluating_ = false;  // inside evaluate(): names stand for their initial values
-  static constexpr uint32_t kNoLocal = 0xffffffffu;
-  std::array<uint32_t, 3> message_buffers_{kNoLocal, kNoLocal, kNoLocal};
 };
+
+// Lowers the body of a POU that has one.
+void write_body(Sema& sema, uint32_t pou);
 
 }  // namespace frontend

@@ -1,6 +1,6 @@
 // Calls of functions and function block instances, by the call discipline of
 // ir/program/ir.h: everything is evaluated first, then passed, then called.
-#include "frontend/lower/call.h"
+#include "frontend/lower/body.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/standard_calls.h"
 
@@ -241,12 +241,12 @@ ir::Place Body::argument_place(const PouInfo& callee, const Variable& variable) 
   return out;
 }
 
-Body::Result Body::call_function(const Expr& call, const Callee& callee, bool wants_result) {
+CallResult Body::call_function(const Expr& call, const Callee& callee, bool wants_result) {
   const PouInfo& function = sema_.declared.pous[callee.pou];
   const bool method = callee.kind == Callee::Kind::kMethod;
   if (!method) info_.callees.push_back(callee.pou);
   std::vector<Binding> bindings;
-  Result result;
+  CallResult result;
   bool good = bind_arguments(call, function, bindings) && check_in_outs(call, function, bindings) &&
               check_given(call, function, bindings);
   if (!good) return result;
@@ -344,7 +344,7 @@ ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId o
 // A result that is no scalar.
 ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId type) {
   if (callee.kind == Callee::Kind::kFunction || callee.kind == Callee::Kind::kMethod) {
-    Result result = call_function(expr, callee, true);
+    CallResult result = call_function(expr, callee, true);
     return result.place.type.valid() ? result.place : temporary_place(type);
   }
   if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);

@@ -1,11 +1,12 @@
 // One argument of a call on its way from expression to parameter.
 #pragma once
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/target.h"
+#include "frontend/parse/tree.h"
 
 namespace frontend {
 
-struct Body::Binding {
+struct Binding {
   VarId variable;
   const Arg* arg;
   ir::ValueId value;               // input: scalar; in-out: address

@@ -67,15 +67,16 @@ void Body::case_statement(const Stmt& stmt) {
   case_tree(tests, 0, leaves.size());
   for (uint32_t i = 0; i < stmt.arms.count; ++i) {
     build_.start(arms[i]);
-    if (counting_.on()) {
+    if (body_.counting.on()) {
       const uint32_t line = sema_.sources.locate(tree_.cases[stmt.arms.first + i].span.begin).line;
-      counting_.count(SiteKind::kBranch, stmt.span.begin, "CASE: line " + std::to_string(line), i);
+      body_.counting.count(SiteKind::kBranch, stmt.span.begin, "CASE: line " + std::to_string(line),
+                           i);
     }
     statements(tree_.cases[stmt.arms.first + i].body);
     if (build_.reachable()) build_.jump(done);
   }
   build_.start(otherwise);
-  counting_.count(SiteKind::kBranch, stmt.span.begin, "CASE: ELSE", stmt.arms.count);
+  body_.counting.count(SiteKind::kBranch, stmt.span.begin, "CASE: ELSE", stmt.arms.count);
   statements(stmt.else_body);
   if (build_.reachable()) build_.jump(done);
   build_.start(done);

@@ -1,6 +1,7 @@
 // Sequential function charts: where their state lies, and the flags of one call. Steps and
 // transitions: chart_steps.cc; actions: chart_actions.cc.
 #include "frontend/lower/chart.h"
+#include "frontend/lower/body.h"
 
 #include <algorithm>
 
@@ -14,7 +15,7 @@ constexpr uint32_t kMostSingle = 16;  // flags that begin one by one
 }  // namespace
 
 void ChartBody::run() {
-  body_.set_line(chart_.span);
+  set_line(chart_.span);
   unused_actions();
   if (!find_places()) return report_all();
   describe_net();
@@ -33,7 +34,7 @@ void ChartBody::run() {
 // A name that means something else, too, has been reported; what remains is only checked.
 void ChartBody::report_all() {
   for (const ChartTransition& transition : chart_.transitions) {
-    if (transition.condition.valid()) body_.condition(transition.condition);
+    if (transition.condition.valid()) ask<Body>().condition(transition.condition);
   }
   for (const sfc::Action& action : net_.actions) {
     if (action.decl == nullptr) variable_of(action);
@@ -41,20 +42,20 @@ void ChartBody::report_all() {
   for (const ChartStep& step : chart_.steps) {
     for (const ActionUse& use : step.uses) {
       limit_of(use);
-      for (ExprId indicator : use.indicators) body_.infer(indicator);
+      for (ExprId indicator : use.indicators) infer(indicator);
     }
   }
-  for (const ChartAction& action : chart_.actions) body_.statements(action.body);
+  for (const ChartAction& action : chart_.actions) ask<Body>().statements(action.body);
 }
 
 void ChartBody::describe_net() {
   const auto members = [&](const std::vector<uint32_t>& steps) {
     std::vector<uint32_t> numbers;
-    for (const uint32_t step : steps) numbers.push_back(body_.resolve(steps_[step]).index);
+    for (const uint32_t step : steps) numbers.push_back(resolve(steps_[step]).index);
     std::sort(numbers.begin(), numbers.end());
     return numbers;
   };
-  std::vector<ir::ChartMove>& chart = body_.out_.chart;
+  std::vector<ir::ChartMove>& chart = body_.out.chart;
   for (const uint32_t initial : net_.initial) {
     if (initial != sfc::kNone) chart.push_back({{}, members({initial})});
   }
@@ -65,9 +66,9 @@ void ChartBody::describe_net() {
 
 bool ChartBody::find_places() {
   auto variable = [&](std::string_view name, const char* member) {
-    auto found = body_.info_.names.find(name);
-    if (found == body_.info_.names.end()) return VarId();
-    const Variable& resolved = body_.resolve(found->second);
+    auto found = info_.names.find(name);
+    if (found == info_.names.end()) return VarId();
+    const Variable& resolved = resolve(found->second);
     bool own = resolved.decl != nullptr && resolved.decl->implied && resolved.type.valid();
     own = own && (member == nullptr || sema_.declared.find_member(resolved.type, member) >= 0);
     return own ? found->second : VarId();
@@ -98,8 +99,8 @@ bool ChartBody::find_places() {
   late_.resize(net_.actions.size());
   if (flag_count_ == 0) return true;
   auto last = static_cast<int64_t>(flag_count_) - 1;
-  ir::TypeId type = sema_.program.types.array(body_.elementary(ir::Kind::kBool), {{0, last}});
-  flags_ = body_.temporary_place(type);
+  ir::TypeId type = sema_.program.types.array(elementary(ir::Kind::kBool), {{0, last}});
+  flags_ = temporary_place(type);
   if (flag_count_ > kMostSingle) {
     build_.init(flags_, {});
   } else {
@@ -135,7 +136,7 @@ ir::Place ChartBody::flag(uint32_t number) const {
   ir::Step& step = place.steps.emplace_back();
   step.kind = ir::StepKind::kIndex;
   step.constant_index = number;
-  place.type = body_.elementary(ir::Kind::kBool);
+  place.type = elementary(ir::Kind::kBool);
   return place;
 }
 
@@ -149,12 +150,12 @@ void ChartBody::raise(uint32_t number) {
 
 // A member of the variable of a step or action.
 ir::Place ChartBody::part(VarId id, const char* member) {
-  const Variable& variable = body_.resolve(id);
-  ir::Place place = body_.member_variable_place(variable);
+  const Variable& variable = resolve(id);
+  ir::Place place = member_variable_place(variable);
   ir::Step& step = place.steps.emplace_back();
   step.kind = ir::StepKind::kMember;
   step.index = static_cast<uint32_t>(sema_.declared.find_member(variable.type, member));
-  place.type = body_.types()[variable.type].members[step.index].type;
+  place.type = types()[variable.type].members[step.index].type;
   return place;
 }
 

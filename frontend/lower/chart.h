@@ -1,9 +1,12 @@
 // Lowers the chart of one body: where its state lives, the flags of one call, and the code that
-// moves steps and controls actions. docs/adr/0009-sfc.md says what happens in which order. A
-// part of Body: it writes to the same POU and asks it for conditions, statements and values.
+// moves steps and controls actions. docs/adr/0009-sfc.md says what happens in which order.
 #pragma once
 
-#include "frontend/lower/body.h"
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "frontend/lower/body_phase.h"
 #include "frontend/sfc/net.h"
 
 namespace frontend {
@@ -12,15 +15,10 @@ namespace frontend {
 inline constexpr ir::Scalar kFlag = ir::Scalar::kBool;
 inline constexpr ir::Scalar kElapsed = ir::Scalar::kI64;
 
-class ChartBody {
+class ChartBody : public BodyPhase {
  public:
-  ChartBody(Body& body, const Chart& chart)
-      : body_(body),
-        build_(body.build_),
-        sema_(body.sema_),
-        tree_(body.tree_),
-        chart_(chart),
-        net_(sfc::resolve(chart)) {}
+  ChartBody(Lowering& body, const PouScope& scope, const Chart& chart)
+      : BodyPhase(body, scope), chart_(chart), net_(sfc::resolve(chart)) {}
   void run();
 
  private:
@@ -79,10 +77,6 @@ class ChartBody {
     return (qualifiers_[action] >> static_cast<uint32_t>(qualifier) & 1) != 0;
   }
 
-  Body& body_;
-  Builder& build_;
-  Sema& sema_;
-  const Tree& tree_;
   const Chart& chart_;
   sfc::Net net_;
   std::vector<VarId> steps_;  // variables of the steps and action records

@@ -1,5 +1,6 @@
 // Actions of charts: what steps ask of them, whether they run (action control of IEC 61131-3),
 // and their statements.
+#include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
 #include "frontend/sema/variables.h"
 
@@ -32,10 +33,10 @@ void ChartBody::unused_actions() {
 
 // RETURN leaves the action.
 void ChartBody::action_statements(const ChartAction& action, ir::BlockId next) {
-  ir::BlockId outer = body_.exit_;
-  body_.exit_ = next;
-  body_.statements(action.body);
-  body_.exit_ = outer;
+  ir::BlockId outer = body_.flow.exit;
+  body_.flow.exit = next;
+  ask<Body>().statements(action.body);
+  body_.flow.exit = outer;
   if (build_.reachable()) build_.jump(next);
 }
 
@@ -45,7 +46,7 @@ void ChartBody::step_uses() {
     bool active = false;  // asks something that only an active step may
     for (const sfc::Use& use : uses) {
       for (ExprId indicator : use.decl->indicators) {
-        const VarId variable = body_.infer(indicator).variable;
+        const VarId variable = infer(indicator).variable;
         if (variable.valid()) sema_.mark_written(variable);  // by what the action says
       }
       switch (use.decl->qualifier) {
@@ -59,7 +60,7 @@ void ChartBody::step_uses() {
       }
     }
     if (!active) continue;
-    body_.set_line(net_.steps[step].decl->name.span);
+    set_line(net_.steps[step].decl->name.span);
     when(part(steps_[step], "X"), [&] {
       for (const sfc::Use& use : uses) request(step, use);
     });
@@ -93,7 +94,7 @@ void ChartBody::request(uint32_t step, const sfc::Use& use) {
     return build_.compare(ir::Op::kLt, kElapsed, time, limit);
   };
   auto elapsed = [&] { return build_.unary(ir::Op::kNot, kFlag, still_shorter()); };
-  body_.set_line(use.decl->span);
+  set_line(use.decl->span);
   switch (use.decl->qualifier) {
     case ActionQualifier::kS:
       return set_flag(part(record, "S"));
@@ -117,8 +118,8 @@ void ChartBody::request(uint32_t step, const sfc::Use& use) {
 }
 
 ir::ValueId ChartBody::limit_of(const ActionUse& use) {
-  ir::TypeId time = body_.elementary(ir::Kind::kTime);
-  return use.time.valid() ? body_.value(use.time, time) : body_.code_.zero(time);
+  ir::TypeId time = elementary(ir::Kind::kTime);
+  return use.time.valid() ? value(use.time, time) : code_.zero(time);
 }
 
 // The time is read while the step is active. What is stored already goes on counting.
@@ -183,7 +184,7 @@ void ChartBody::control(uint32_t number) {
     return build_.binary(ir::Op::kAnd, kFlag, a, b);
   };
   auto no = [&](ir::ValueId value) { return build_.unary(ir::Op::kNot, kFlag, value); };
-  body_.set_line(action.decl != nullptr ? action.name.span : tree_[action.target].span);
+  set_line(action.decl != nullptr ? action.name.span : tree_[action.target].span);
   auto is_active = [&](uint32_t step) { return build_.load(part(steps_[step], "X"), kFlag); };
   ir::ValueId reset = any_user(number, ActionQualifier::kR, is_active);
   ir::ValueId keep = reset.valid() ? no(reset) : reset;
@@ -205,7 +206,7 @@ void ChartBody::control(uint32_t number) {
   build_.store(part(record, "Q"), kFlag, action.decl != nullptr ? q : late);
   if (action.decl == nullptr) {
     auto variable = variable_of(action);
-    if (variable) body_.store(*variable, late);
+    if (variable) store(*variable, late);
     return;
   }
   late_[number] = late;
@@ -215,27 +216,27 @@ void ChartBody::control(uint32_t number) {
 // An action that is a BOOL variable.
 std::optional<Target> ChartBody::variable_of(const sfc::Action& action) {
   const Expr& name = tree_[action.target];
-  VarId id = body_.ask<Variables>().find_variable(name);
+  VarId id = ask<Variables>().find_variable(name);
   if (!id.valid()) {
     NearestName nearest(name.name.text);
-    for (const auto& entry : body_.info_.names) {
+    for (const auto& entry : info_.names) {
       if (entry.first.find('#') == std::string_view::npos) nearest.offer(entry.first);
     }
-    body_.error(DiagnosticCode::kUnknownAction, name.span,
-                "`" + std::string(name.name.text) + "` is neither an ACTION nor a variable",
-                nearest.fix());
+    error(DiagnosticCode::kUnknownAction, name.span,
+          "`" + std::string(name.name.text) + "` is neither an ACTION nor a variable",
+          nearest.fix());
     return std::nullopt;
   }
-  const Note& note = body_.infer(action.target);
+  const Note& note = infer(action.target);
   if (!note.type.valid()) return std::nullopt;
-  if (!traits_of(body_.types(), note.type).boolean) {
-    body_.error(DiagnosticCode::kUnknownAction, name.span,
-                "`" + std::string(name.name.text) + "` is `" + sema_.report.type_text(note.type) +
-                    "`; an action is an ACTION or a BOOL variable",
-                "declare an ACTION that writes it");
+  if (!traits_of(types(), note.type).boolean) {
+    error(DiagnosticCode::kUnknownAction, name.span,
+          "`" + std::string(name.name.text) + "` is `" + sema_.report.type_text(note.type) +
+              "`; an action is an ACTION or a BOOL variable",
+          "declare an ACTION that writes it");
     return std::nullopt;
   }
-  return body_.target(action.target);
+  return target(action.target);
 }
 
 // First final scans and what steps do when they are left, then what is requested: the end of one
@@ -255,7 +256,7 @@ void ChartBody::bodies() {
   for (uint32_t number = 0; number < net_.actions.size(); ++number) {
     const sfc::Action& action = net_.actions[number];
     if (action.decl == nullptr || action.uses == 0) continue;
-    body_.set_line(action.name.span);
+    set_line(action.name.span);
     ir::BlockId run = build_.new_block();
     ir::BlockId next = build_.new_block();
     ir::ValueId a = build_.load(part(actions_[number], "A"), kFlag);

@@ -1,6 +1,7 @@
 // Step times, transitions and moves of charts.
 #include <algorithm>
 
+#include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
 
 namespace frontend {
@@ -21,8 +22,8 @@ uint32_t group_size(size_t count) {
 
 // A clock that has begun anew, after a restart with retained steps, stands still once.
 void ChartBody::read_clock() {
-  ir::Place clock = body_.member_variable_place(body_.resolve(clock_));
-  clock.type = body_.elementary(ir::Kind::kTime);
+  ir::Place clock = member_variable_place(resolve(clock_));
+  clock.type = elementary(ir::Kind::kTime);
   ir::ValueId now = build_.task_time();
   ir::ValueId before = build_.load(clock, kElapsed);
   ir::ValueId passed = build_.binary(ir::Op::kSub, kElapsed, now, before);
@@ -72,13 +73,12 @@ bool ChartBody::moves_at_once(uint32_t number) const {
 
 // Nothing that a step or an action has, but for `step`; nothing that can trap, and no call.
 bool ChartBody::asks_only(ExprId condition, uint32_t step) {
-  const Note& note = body_.infer(condition);
+  const Note& note = infer(condition);
   const Expr& expr = tree_[condition];
   if (note.calls || note.can_trap || !note.type.valid()) return false;
   if (note.constant) return true;
   // What the caller gave may be a part of a step.
-  const bool in_out =
-      note.variable.valid() && body_.resolve(note.variable).section == VarSection::kInOut;
+  const bool in_out = note.variable.valid() && resolve(note.variable).section == VarSection::kInOut;
   if (in_out) return false;
   switch (expr.kind) {
     case ExprKind::kLiteral:
@@ -88,12 +88,12 @@ bool ChartBody::asks_only(ExprId condition, uint32_t step) {
       return true;
     case ExprKind::kMember: {
       if (note.variable.valid()) return true;
-      const Note& outer = body_.infer(expr.operand);
+      const Note& outer = infer(expr.operand);
       for (uint32_t other = 0; other < steps_.size(); ++other) {
         if (outer.variable == steps_[other]) return other == step;
       }
       const auto is_of = [&](const std::vector<VarId>& all) {
-        return !all.empty() && body_.resolve(all[0]).type == outer.type;
+        return !all.empty() && resolve(all[0]).type == outer.type;
       };
       return !is_of(steps_) && !is_of(actions_) && asks_only(expr.operand, step);
     }
@@ -116,7 +116,7 @@ void ChartBody::active_steps() {
   active_.resize(net_.initial.size());
   fired_.resize((waiting_.size() + kWordBits - 1) / kWordBits);
   for (ir::Place& word : fired_) {
-    word = body_.temporary_place(body_.elementary(ir::Kind::kLword));
+    word = temporary_place(elementary(ir::Kind::kLword));
     build_.store(word, kWord, build_.constant(kWord, 0));
   }
   for (auto end = static_cast<uint32_t>(steps_.size()); end > 0;) {
@@ -147,10 +147,10 @@ void ChartBody::active_step(uint32_t step) {
     if (!build_.reachable()) build_.start(build_.new_block());  // is checked
     const ChartTransition& decl = *net_.transitions[t].decl;
     ir::BlockId next = done;
-    body_.set_line(decl.span);
+    set_line(decl.span);
     if (decl.condition.valid()) {
       next = build_.new_block();
-      go_on_if(body_.condition(decl.condition), true, next);
+      go_on_if(ask<Body>().condition(decl.condition), true, next);
     }
     count_transition(t);
     fire(t);
@@ -186,7 +186,7 @@ void ChartBody::transition(uint32_t number) {
   const sfc::Transition& transition = net_.transitions[number];
   if (alone_[transition.from[0]]) return;  // active_step()
   ir::BlockId next = build_.new_block();
-  body_.set_line(transition.decl->span);
+  set_line(transition.decl->span);
   for (uint32_t step : transition.from) {
     go_on_if(build_.load(part(steps_[step], "X"), kFlag), true, next);
   }
@@ -194,7 +194,7 @@ void ChartBody::transition(uint32_t number) {
     if (spent_[step] != sfc::kNone) go_on_if(is_raised(spent_[step]), false, next);
   }
   if (transition.decl->condition.valid())
-    go_on_if(body_.condition(transition.decl->condition), true, next);
+    go_on_if(ask<Body>().condition(transition.decl->condition), true, next);
   count_transition(number);
   fire(number);
   for (uint32_t step : transition.from) raise(spent_[step]);
@@ -203,7 +203,7 @@ void ChartBody::transition(uint32_t number) {
 }
 
 void ChartBody::count_transition(uint32_t number) {
-  if (!body_.counting_.on()) return;
+  if (!body_.counting.on()) return;
   const auto names = [&](const std::vector<uint32_t>& steps) {
     std::string text;
     for (const uint32_t step : steps) {
@@ -212,17 +212,17 @@ void ChartBody::count_transition(uint32_t number) {
     return text;
   };
   const sfc::Transition& transition = net_.transitions[number];
-  body_.counting_.count(SiteKind::kTransition, transition.decl->span.begin,
-                        names(transition.from) + " to " + names(transition.to));
+  body_.counting.count(SiteKind::kTransition, transition.decl->span.begin,
+                       names(transition.from) + " to " + names(transition.to));
 }
 
 // At the end of a call, when all moves are made.
 void ChartBody::count_steps() {
-  if (!body_.counting_.on()) return;
+  if (!body_.counting.on()) return;
   for (uint32_t step = 0; step < net_.steps.size(); ++step) {
     const Name& name = net_.steps[step].decl->name;
     when(part(steps_[step], "X"),
-         [&] { body_.counting_.count(SiteKind::kStep, name.span.begin, std::string(name.text)); });
+         [&] { body_.counting.count(SiteKind::kStep, name.span.begin, std::string(name.text)); });
   }
 }
 
@@ -290,7 +290,7 @@ void ChartBody::starts() {
   for (uint32_t network = 0; network < net_.initial.size(); ++network) {
     uint32_t initial = net_.initial[network];
     if (initial == sfc::kNone) continue;
-    body_.set_line(net_.steps[initial].decl->name.span);
+    set_line(net_.steps[initial].decl->name.span);
     when(build_.unary(ir::Op::kNot, kFlag, active_[network]), [&] { enter(initial); });
   }
 }

@@ -12,13 +12,16 @@ void Body::connect_inputs() {
     Target target;
     target.place = member_variable_place(input);
     target.type = input.type;
-    const ScopeChange outside(scope_, {});
-    set_line(arg.span);
-    if (types().is_scalar(input.type)) {
-      store(target, value(arg.value, input.type));
-    } else {
-      assign_aggregate(target, arg.value);
-    }
+    Body(body_, PouScope()).connect_input(target, arg);
+  }
+}
+
+void Body::connect_input(const Target& input, const Arg& arg) {
+  set_line(arg.span);
+  if (types().is_scalar(input.type)) {
+    store(input, value(arg.value, input.type));
+  } else {
+    assign_aggregate(input, arg.value);
   }
 }
 
@@ -27,24 +30,27 @@ void Body::connect_outputs() {
     const Arg& arg = tree_.args[connection.arg];
     const Variable& output = resolve(connection.parameter);
     if (output.section != VarSection::kOutput || !output.type.valid()) continue;
-    ir::Place from = member_variable_place(output);
-    const ScopeChange outside(scope_, {});
-    set_line(arg.span);
-    auto to = target(arg.value);
-    if (!to) continue;
-    bool strings = is_string(types(), output.type) && is_string(types(), to->type) &&
-                   wide(output.type) == wide(to->type);
-    if (types().is_scalar(output.type) && types().is_scalar(to->type)) {
-      ir::ValueId now = build_.load(from, scalar(output.type));
-      if (arg.negated) now = build_.unary(ir::Op::kNot, scalar(output.type), now);
-      store(*to, convert({now, output.type}, to->type, arg.span));
-    } else if (strings || output.type == to->type) {
-      build_.copy(to->place, from);
-    } else {
-      error(DiagnosticCode::kWrongArgument, arg.span,
-            "`" + std::string(output.name.text) + "` is `" + sema_.report.type_text(output.type) +
-                "`, its target is `" + sema_.report.type_text(to->type) + "`");
-    }
+    Body(body_, PouScope()).connect_output(output, arg);
+  }
+}
+
+void Body::connect_output(const Variable& output, const Arg& arg) {
+  ir::Place from = member_variable_place(output);
+  set_line(arg.span);
+  auto to = target(arg.value);
+  if (!to) return;
+  bool strings = is_string(types(), output.type) && is_string(types(), to->type) &&
+                 wide(output.type) == wide(to->type);
+  if (types().is_scalar(output.type) && types().is_scalar(to->type)) {
+    ir::ValueId now = build_.load(from, scalar(output.type));
+    if (arg.negated) now = build_.unary(ir::Op::kNot, scalar(output.type), now);
+    store(*to, convert({now, output.type}, to->type, arg.span));
+  } else if (strings || output.type == to->type) {
+    build_.copy(to->place, from);
+  } else {
+    error(DiagnosticCode::kWrongArgument, arg.span,
+          "`" + std::string(output.name.text) + "` is `" + sema_.report.type_text(output.type) +
+              "`, its target is `" + sema_.report.type_text(to->type) + "`");
   }
 }
 

@@ -11,37 +11,33 @@ constexpr uint64_t kBudget = 100'000;
 
 }  // namespace
 
-std::optional<Constant> Body::evaluate(Sema& sema, const PouScope& scope, ExprId id,
-                                       ir::TypeId context) {
-  PouInfo info;
-  Body body(sema, scope, info, kNoPou, ir::Pou{});
-  body.evaluating_ = true;
-  base::SourceSpan span = sema.tree[id].span;
-  body.lines_.leave_out(span.begin);
-  Note note = body.infer(id);
+std::optional<Constant> Body::evaluate(ExprId id, ir::TypeId context) {
+  const base::SourceSpan span = tree_[id].span;
+  body_.lines.leave_out(span.begin);
+  Note note = infer(id);
   const bool wide = note.width == Width::kWide;
-  ir::TypeId type = without_range(sema.program.types,
-                                  wide ? computed_type(sema, note) : body.own_type(note, context));
-  if (sema.program.types.is_scalar(type)) {
-    ir::ValueId value = body.emit(id, type);
-    ir::Place result = body.temporary_place(type);
-    body.build_.store(result, body.scalar(type), value);
-    return body.run_alone(result.base_index, span);
+  ir::TypeId type =
+      without_range(types(), wide ? computed_type(sema_, note) : own_type(note, context));
+  if (types().is_scalar(type)) {
+    ir::ValueId value = emit(id, type);
+    ir::Place result = temporary_place(type);
+    build_.store(result, scalar(type), value);
+    return run_alone(result.base_index, span);
   }
-  if (!is_string(sema.program.types, type)) {
-    body.error(DiagnosticCode::kNotConstant, span, "this has to be known when compiling");
+  if (!is_string(types(), type)) {
+    error(DiagnosticCode::kNotConstant, span, "this has to be known when compiling");
     return std::nullopt;
   }
-  ir::Place from = body.call_place(id, sema.tree[id]);
-  ir::Place result = body.temporary_place(type);
-  body.build_.copy(result, from);
-  return body.run_alone(result.base_index, span);
+  ir::Place from = call_place(id, tree_[id]);
+  ir::Place result = temporary_place(type);
+  build_.copy(result, from);
+  return run_alone(result.base_index, span);
 }
 
 std::optional<Constant> Body::run_alone(uint32_t local, base::SourceSpan span) {
   build_.finish();
-  ir::TypeId type = out_.locals[local].type;
-  ir::EvalResult result = ir::evaluate_alone(sema_.program, out_, local, kBudget);
+  ir::TypeId type = body_.out.locals[local].type;
+  ir::EvalResult result = ir::evaluate_alone(sema_.program, body_.out, local, kBudget);
   if (result.trap) {
     error(DiagnosticCode::kConstantTraps, span,
           "this cannot be computed: " + std::string(ir::trap_name(result.trap->kind)) +
@@ -58,7 +54,10 @@ std::optional<Constant> Body::run_alone(uint32_t local, base::SourceSpan span) {
 
 std::optional<Constant> evaluate_constant(Sema& sema, const PouScope& scope, ExprId expr,
                                           ir::TypeId context) {
-  return Body::evaluate(sema, scope, expr, context);
+  PouInfo info;
+  Lowering body(sema, info, kNoPou, ir::Pou{});
+  body.evaluating = true;
+  return Body(body, scope).evaluate(expr, context);
 }
 
 }  // namespace frontend

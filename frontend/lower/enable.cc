@@ -46,7 +46,7 @@ void Body::open_enable(Enable& enable) {
   if (enable.eno == nullptr) return;
   enable.handler = build_.new_block();
   enter_try(enable.handler, {}, enable.eno->span);
-  tries_.back().eno = true;
+  body_.flow.tries.back().eno = true;
 }
 
 void Body::store_eno(const Enable& enable, bool good) {

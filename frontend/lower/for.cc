@@ -48,22 +48,22 @@ void Body::for_statement(const Stmt& stmt) {
   ir::BlockId next = build_.new_block();
   ir::BlockId exit = build_.new_block();
   const bool may_be_left_out = !infer(stmt.from).constant || !loop.constant_to;
-  if (counting_.on() && may_be_left_out) {
+  if (body_.counting.on() && may_be_left_out) {
     const ir::BlockId sides[] = {build_.new_block(), build_.new_block()};
     for_test(loop, sides[0], sides[1]);
     build_.start(sides[0]);
-    counting_.count(SiteKind::kBranch, stmt.span.begin, "FOR: some rounds", 0);
+    body_.counting.count(SiteKind::kBranch, stmt.span.begin, "FOR: some rounds", 0);
     build_.jump(head);
     build_.start(sides[1]);
-    counting_.count(SiteKind::kBranch, stmt.span.begin, "FOR: no round", 1);
+    body_.counting.count(SiteKind::kBranch, stmt.span.begin, "FOR: no round", 1);
   }
   build_.jump(head);
   build_.start(head);
   for_test(loop, body, exit);
   build_.start(body);
-  if (variable.valid()) for_variables_.push_back(variable);
+  if (variable.valid()) body_.flow.for_variables.push_back(variable);
   loop_body(stmt.body, next, exit);
-  if (variable.valid()) for_variables_.pop_back();
+  if (variable.valid()) body_.flow.for_variables.pop_back();
   build_.start(next);
   set_line(stmt.span);
   for_advance(loop, head, exit);

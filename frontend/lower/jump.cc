@@ -5,8 +5,8 @@
 
 namespace frontend {
 
-Body::Labels Body::labels_of(Range32 list) {
-  Labels labels;
+Flow::Labels Body::labels_of(Range32 list) {
+  Flow::Labels labels;
   for (uint32_t i = 0; i < list.count; ++i) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
     if (stmt.kind != StmtKind::kLabel) continue;
@@ -26,7 +26,7 @@ Body::Labels Body::labels_of(Range32 list) {
 }
 
 void Body::label(const Stmt& stmt) {
-  ir::BlockId block = labels_.back().labels.find(tree_.name(stmt.name).text)->second;
+  ir::BlockId block = body_.flow.labels.back().labels.find(tree_.name(stmt.name).text)->second;
   if (build_.started(block)) return;  // the name stands twice
   if (build_.reachable()) build_.jump(block);
   build_.start(block);
@@ -37,11 +37,11 @@ void Body::jump(const Stmt& stmt) {
     allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
   }
   const Name wanted = tree_.name(stmt.name);
-  for (size_t i = labels_.size(); i-- > 0;) {
-    auto found = labels_[i].labels.find(wanted.text);
-    if (found == labels_[i].labels.end()) continue;
+  for (size_t i = body_.flow.labels.size(); i-- > 0;) {
+    auto found = body_.flow.labels[i].labels.find(wanted.text);
+    if (found == body_.flow.labels[i].labels.end()) continue;
     leave_loops();
-    return go(found->second, labels_[i].tries);
+    return go(found->second, body_.flow.labels[i].tries);
   }
   std::string name = "`" + std::string(wanted.text) + "`";
   for (const Stmt& other : tree_.stmts) {
@@ -55,7 +55,7 @@ void Body::jump(const Stmt& stmt) {
     return;
   }
   NearestName nearest(wanted.text);
-  for (const LabelList& list : labels_) nearest.offer_all(list.labels);
+  for (const Flow::LabelList& list : body_.flow.labels) nearest.offer_all(list.labels);
   error(DiagnosticCode::kUnknownLabel, wanted.span, "there is no label " + name, nearest.fix());
 }
 

@@ -1,7 +1,7 @@
 // Calls of methods, actions and bodies of bases, and properties, by "Objects" in
 // ir/program/ir.h. Where the type of the instance is known, its method is called; a
 // reference, an interface variable or THIS may lead to a derived one that has another.
-#include "frontend/lower/call.h"
+#include "frontend/lower/body.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/objects.h"
 
@@ -63,8 +63,8 @@ const MemberCode& Body::property_code(ExprId id) {
   return sema_.declared.pous[infer(id).property].code.find(tree_[id].name.text)->second;
 }
 
-Body::Result Body::result_of(const PouInfo& callee) {
-  Result result;
+CallResult Body::result_of(const PouInfo& callee) {
+  CallResult result;
   if (!callee.result.valid()) return result;
   const Variable& variable = resolve(callee.result);
   if (variable.type.valid() && types().is_scalar(variable.type)) {
@@ -76,14 +76,14 @@ Body::Result Body::result_of(const PouInfo& callee) {
   return result;
 }
 
-Body::Result Body::get_property(uint32_t getter, Receiver receiver) {
+CallResult Body::get_property(uint32_t getter, Receiver receiver) {
   const PouInfo& accessor = sema_.declared.pous[getter];
   prepare_receiver(accessor, receiver);
   emit_method_call(accessor, receiver);
   return result_of(accessor);
 }
 
-Body::Result Body::read_property(ExprId id) {
+CallResult Body::read_property(ExprId id) {
   const Expr& expr = tree_[id];
   const MemberCode& code = property_code(id);
   if (code.getter == kNoPou) {

@@ -68,8 +68,8 @@ ir::ValueId Body::emit_lazy(const Expr& expr) {
   ir::BlockId known = build_.new_block();
   ir::BlockId done = build_.new_block();
   ir::ValueId result = build_.add_param(done, ir::Scalar::kBool);
-  counting_.decide(left, conjunction ? more : known, conjunction ? known : more, expr.op,
-                   conjunction ? "left of AND_THEN" : "left of OR_ELSE");
+  body_.counting.decide(left, conjunction ? more : known, conjunction ? known : more, expr.op,
+                        conjunction ? "left of AND_THEN" : "left of OR_ELSE");
   build_.start(known);
   ir::ValueId decided = build_.constant(ir::Scalar::kBool, conjunction ? 0 : 1);
   build_.jump(done, {decided});

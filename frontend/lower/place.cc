@@ -11,25 +11,6 @@
 
 namespace frontend {
 
-ir::Place Body::local_place(uint32_t local) {
-  ir::Place place;
-  place.base = ir::PlaceBase::kLocal;
-  place.base_index = local;
-  place.base_type = place.type = out_.locals[local].type;
-  return place;
-}
-
-ir::Place Body::temporary_place(ir::TypeId type) { return local_place(build_.temporary(type)); }
-
-ir::Place Body::global_place(uint32_t member) {
-  ir::Place place;
-  place.base = ir::PlaceBase::kGlobal;
-  place.base_type = sema_.program.globals;
-  place.steps.push_back(step_to(ir::StepKind::kMember, member));
-  place.type = types()[sema_.program.globals].members[member].type;
-  return place;
-}
-
 // The place of a variable in shared bytes.
 ir::Place Body::view_place(const AddressView& view) {
   ir::Place place = global_place(view.global);
@@ -55,7 +36,7 @@ ir::Place Body::variable_place(VarId id) {
     return global_place(variable.index);
   }
   // Methods see the input itself.
-  bool body = variable.pou == pou_number_ ||
+  bool body = variable.pou == body_.number ||
               (variable.pou == info_.owner && info_.decl->kind == PouKind::kAction);
   if (variable.edge.valid() && body) return variable_place(variable.edge);
   ir::Place place = variable.storage == Storage::kLocal ? local_place(variable.index)
@@ -63,15 +44,6 @@ ir::Place Body::variable_place(VarId id) {
   if (variable.section == VarSection::kInOut && !variable.by_reference) {
     place.steps.push_back(step_to(ir::StepKind::kDeref));
   }
-  place.type = variable.type;
-  return place;
-}
-
-ir::Place Body::member_variable_place(const Variable& variable) {
-  ir::Place place;
-  place.base = ir::PlaceBase::kSelf;
-  place.base_type = info_.self;
-  place.steps.push_back(step_to(ir::StepKind::kMember, variable.index));
   place.type = variable.type;
   return place;
 }
@@ -112,7 +84,7 @@ ir::Place Body::raw_place(ExprId id) {
 }
 
 ir::Place Body::property_place(ExprId id) {
-  const Result result = read_property(id);
+  const CallResult result = read_property(id);
   if (!result.value.valid()) return result.place;
   const ir::Place kept =
       temporary_place(resolve(sema_.declared.pous[property_code(id).getter].result).type);

@@ -1,4 +1,5 @@
 #include "frontend/lower/pool_code.h"
+#include "frontend/lower/body.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/pools.h"
@@ -38,7 +39,7 @@ ir::Place own_instance(ir::TypeId self) {
 }  // namespace
 
 void PoolCode::search(const Pool& pool, const PerElement& each) {
-  const ir::Place counter = body_.temporary_place(types().elementary(ir::Kind::kLint));
+  const ir::Place counter = temporary_place(types().elementary(ir::Kind::kLint));
   const ir::BlockId head = build_.new_block();
   const ir::BlockId inside = build_.new_block();
   const ir::BlockId done = build_.new_block();
@@ -51,8 +52,8 @@ void PoolCode::search(const Pool& pool, const PerElement& each) {
   const ir::ValueId now = build_.load(counter, kNumber);
   build_.branch(build_.compare(ir::Op::kLe, kNumber, now, constant(pool.count)), inside, done);
   build_.start(inside);
-  each(element_at(body_.variable_place(pool.elements), now, sema_.declared.pous[pool.block].self),
-       element_at(body_.variable_place(pool.states), now, types().elementary(ir::Kind::kByte)));
+  each(element_at(variable_place(pool.elements), now, sema_.declared.pous[pool.block].self),
+       element_at(variable_place(pool.states), now, types().elementary(ir::Kind::kByte)));
   build_.store(counter, kNumber, build_.binary(ir::Op::kAdd, kNumber, now, constant(1)));
   build_.jump(head);
   build_.start(done);
@@ -75,23 +76,23 @@ ir::ValueId PoolCode::handle(const Pool& pool, const ir::Place& element) {
 
 void PoolCode::call_made(uint32_t method, const ir::Place& at) {
   if (method == kNoPou) return;
-  body_.info_.callees.push_back(method);
+  info_.callees.push_back(method);
   build_.call_method(sema_.declared.pous[method].id, at);
 }
 
 // Nothing can come between looking at a state and setting it: no task is suspended there.
 ir::ValueId PoolCode::make(const Expr& call) {
   const ExprId type = sema_.tree.args[call.list.first].value;
-  const Pool* pool = body_.ask<Pools>().of_new(type);
-  if (pool == nullptr) return body_.code_.zero({});
+  const Pool* pool = ask<Pools>().of_new(type);
+  if (pool == nullptr) return code_.zero({});
   const Expr& written = sema_.tree[type];
   const Range32 args = written.kind == ExprKind::kCall ? written.list : Range32();
   if (pool->boxed && args.count != 0) {
-    body_.error(DiagnosticCode::kBadConstruction, written.span,
-                "`" + std::string(pool->name) + "` has no FB_Init that takes arguments");
-    return body_.code_.zero({});
+    error(DiagnosticCode::kBadConstruction, written.span,
+          "`" + std::string(pool->name) + "` has no FB_Init that takes arguments");
+    return code_.zero({});
   }
-  const ir::Place result = body_.temporary_place(types().elementary(ir::Kind::kLword));
+  const ir::Place result = temporary_place(types().elementary(ir::Kind::kLword));
   const ir::BlockId done = build_.new_block();
   build_.store(result, kU64, build_.constant(kU64, 0));
   search(*pool, [&](const ir::Place& element, const ir::Place& state) {
@@ -110,17 +111,17 @@ ir::ValueId PoolCode::make(const Expr& call) {
 
 void PoolCode::destroy(const Expr& call) {
   const ExprId argument = sema_.tree.args[call.list.first].value;
-  const Note& note = body_.infer(argument);
-  if (!note.type.valid() || !body_.check_writable(argument)) return;
-  const ir::Place pointer = body_.place(argument);
-  body_.set_line(call.span);
+  const Note& note = infer(argument);
+  if (!note.type.valid() || !ask<Body>().check_writable(argument)) return;
+  const ir::Place pointer = place(argument);
+  set_line(call.span);
   const ir::ValueId object = build_.load(pointer, kU64);
   const ir::ValueId null = build_.constant(kU64, 0);
   const ir::BlockId done = build_.new_block();
   const ir::BlockId given = build_.new_block();
   build_.branch(build_.compare(ir::Op::kNe, kU64, object, null), given, done);
   build_.start(given);
-  for (const Pool* pool : body_.ask<Pools>().of_target(types()[note.type].base)) {
+  for (const Pool* pool : ask<Pools>().of_target(types()[note.type].base)) {
     search(*pool, [&](const ir::Place& element, const ir::Place& state) {
       start_.when(has_state(state, kPoolUsed), [&] {
         start_.when(build_.compare(ir::Op::kEq, kU64, handle(*pool, element), object), [&] {
@@ -147,7 +148,7 @@ void PoolCode::free(const Pool& pool, const ir::Place& element, const ir::Place&
 void PoolCode::visit_all() {
   for (const Pool& pool : sema_.pools.all) {
     const ir::TypeId type = sema_.declared.pous[pool.block].self;
-    if (!body_.ask<Objects>().constructs(type)) continue;
+    if (!ask<Objects>().constructs(type)) continue;
     search(pool, [&](const ir::Place& element, const ir::Place& state) {
       start_.when(has_state(state, kPoolUsed), [&] { start_.visit(element, type); });
     });
@@ -155,7 +156,7 @@ void PoolCode::visit_all() {
 }
 
 void PoolCode::reset_method() {
-  const ir::TypeId self = body_.info_.self;
+  const ir::TypeId self = info_.self;
   const ir::Place own = own_instance(self);
   const std::vector<ir::Member> members = types()[self].members;
   for (uint32_t i = 0; i < members.size(); ++i) {
@@ -174,7 +175,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
     const uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
     return build_.store(at, scalar, build_.constant(scalar, bits));
   }
-  if (!body_.ask<Pools>().holds_instance(id)) return build_.init(at, init);
+  if (!ask<Pools>().holds_instance(id)) return build_.init(at, init);
   if (!init.valid()) init = type.init;
   if (type.kind == ir::Kind::kArray) return reset_elements(at, id, init);
   const bool instance = types().is_instance(id);
@@ -185,7 +186,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
     const ir::Member& member = type.members[i];
-    const ir::ConstId given = body_.ask<Constants>().listed(init, i);
+    const ir::ConstId given = ask<Constants>().listed(init, i);
     if (instance && !given.valid()) continue;
     reset(part(inside, ir::StepKind::kMember, i, member.type), member.type,
           given.valid() ? given : member.init);
@@ -199,7 +200,7 @@ void PoolCode::reset_elements(const ir::Place& at, ir::TypeId id, ir::ConstId in
 }
 
 void PoolCode::leave_method() {
-  const ir::TypeId self = body_.info_.self;
+  const ir::TypeId self = info_.self;
   const ir::Place own = own_instance(self);
   const std::vector<ir::Member> members = types()[self].members;
   for (uint32_t i = 0; i < members.size(); ++i) {
@@ -211,7 +212,7 @@ void PoolCode::leave_method() {
 // From the outside in.
 void PoolCode::leave(const ir::Place& at, ir::TypeId id) {
   if (!types().contains(id)) return;
-  if (!body_.ask<Pools>().leaves(id)) return;
+  if (!ask<Pools>().leaves(id)) return;
   const ir::Type type = types()[id];
   if (type.kind == ir::Kind::kArray) {
     return start_.each_element(at, id, {},

@@ -1,15 +1,13 @@
-// __NEW and __DELETE, and the methods __RESET and __LEAVE of what lies in pools (sema/pools.h). A
-// part of Body: it writes to the same POU.
+// __NEW and __DELETE, and the methods __RESET and __LEAVE of what lies in pools (sema/pools.h).
 #pragma once
 
 #include "frontend/lower/start_code.h"
 
 namespace frontend {
 
-class PoolCode {
+class PoolCode : public BodyPhase {
  public:
-  explicit PoolCode(Body& body)
-      : body_(body), build_(body.build_), sema_(body.sema_), start_(body) {}
+  PoolCode(Lowering& body, const PouScope& scope) : BodyPhase(body, scope), start_(body, scope) {}
 
   // The first free element, as new, or NULL.
   ir::ValueId make(const Expr& call);
@@ -32,11 +30,7 @@ class PoolCode {
   void reset(const ir::Place& at, ir::TypeId type, ir::ConstId init);
   void reset_elements(const ir::Place& at, ir::TypeId type, ir::ConstId init);
   void leave(const ir::Place& at, ir::TypeId type);
-  const ir::TypeTable& types() const { return sema_.program.types; }
 
-  Body& body_;
-  Builder& build_;
-  Sema& sema_;
   StartCode start_;
 };
 

@@ -139,9 +139,9 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
   const ExprId argument = tree_.args[expr.list.first].value;
   switch (call) {
     case ReferenceCall::kNew:
-      return PoolCode(*this).make(expr);
+      return ask<PoolCode>().make(expr);
     case ReferenceCall::kDelete:
-      PoolCode(*this).destroy(expr);
+      ask<PoolCode>().destroy(expr);
       return code_.zero(own);
     case ReferenceCall::kQuery:
       return attempt(tree_.args[expr.list.first + 1].value, argument, expr.span).fits;

@@ -24,26 +24,26 @@ void Body::keep_result(const Stmt& stmt) {
   if (!single) {
     assign_value(stmt.target, stmt.value, stmt.span);
   } else {
-    result_values_.emplace(number, value(stmt.value, type));
+    body_.result_values.emplace(number, value(stmt.value, type));
   }
 }
 
 ir::ValueId Body::emit_result(ExprId id) {
-  auto found = result_values_.find(tree_[id].number);
-  if (found != result_values_.end()) return found->second;
+  auto found = body_.result_values.find(tree_[id].number);
+  if (found != body_.result_values.end()) return found->second;
   ir::Place from = place(id);
   return build_.load(from, scalar(from.type));
 }
 
 // The result is in the same local wherever it is used.
 ir::Place Body::result_place(const Expr& expr, ir::TypeId type) {
-  auto found = result_places_.find(expr.number);
-  if (found != result_places_.end()) return found->second;
+  auto found = body_.result_places.find(expr.number);
+  if (found != body_.result_places.end()) return found->second;
   ir::Place local = temporary_place(type);
-  if (auto value = result_values_.find(expr.number); value != result_values_.end()) {
+  if (auto value = body_.result_values.find(expr.number); value != body_.result_values.end()) {
     build_.store(local, scalar(type), value->second);
   } else {
-    result_places_.emplace(expr.number, local);
+    body_.result_places.emplace(expr.number, local);
   }
   return local;
 }

@@ -87,7 +87,7 @@ ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::F
     }
   }
   bool strict = sema_.options.strict_strings && !info_.library;
-  if (strict || (!tries_.empty() && tries_.back().eno)) {
+  if (strict || (!body_.flow.tries.empty() && body_.flow.tries.back().eno)) {
     constexpr ir::Scalar kI64 = ir::Scalar::kI64;
     ir::ValueId length = code_.native(string_native(FunctionId::kLen, is_wide), {operands[1]});
     length = code_.machine_convert(length, ir::Scalar::kI32, kI64);

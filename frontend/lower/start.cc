@@ -2,7 +2,7 @@
 #include "frontend/sema/constants.h"
 #include "frontend/sema/objects.h"
 
-#include "frontend/lower/call.h"
+#include "frontend/lower/body.h"
 #include "frontend/lower/pool_code.h"
 #include "ir/types/stamps.h"
 
@@ -31,18 +31,17 @@ ir::Place element(const ir::Place& at, const std::vector<ir::Dimension>& dims, i
 }  // namespace
 
 void StartCode::run() {
-  PouInfo& info = body_.info_;
-  if (info.owner == kNoPou) {
+  if (info_.owner == kNoPou) {
     references(sema_.started.globals);
     for (VarId id : sema_.started.globals) variable(id);
-    PoolCode(body_).visit_all();
-    const ir::Place flag = body_.variable_place(sema_.started.change_flag);
+    ask<PoolCode>().visit_all();
+    const ir::Place flag = variable_place(sema_.started.change_flag);
     return build_.store(flag, ir::Scalar::kU32, number(0));
   }
-  const PouInfo& block = sema_.declared.pous[info.owner];
+  const PouInfo& block = sema_.declared.pous[info_.owner];
   const uint32_t base = block.base == kNoPou ? kNoPou : sema_.declared.pous[block.base].start;
   if (base != kNoPou) {
-    info.callees.push_back(base);
+    info_.callees.push_back(base);
     build_.call_method(sema_.declared.pous[base].id);
   }
   references(block.members);
@@ -51,11 +50,11 @@ void StartCode::run() {
 
 void StartCode::references(const std::vector<VarId>& variables) {
   for (VarId id : variables) {
-    const Variable& variable = body_.resolve(id);
+    const Variable& variable = resolve(id);
     if (variable.section == VarSection::kInOut || !variable.type.valid()) continue;
     if (!sema_.start_values.inside(variable.type, variable.init)) continue;
     span_ = variable.name.span;
-    bind_references(body_.variable_place(id), variable.type, variable.init);
+    bind_references(variable_place(id), variable.type, variable.init);
   }
 }
 
@@ -70,7 +69,7 @@ void StartCode::bind_references(const ir::Place& at, ir::TypeId id, ir::ConstId 
     });
   }
   for (uint32_t i = 0; i < type.members.size(); ++i) {
-    const ir::ConstId given = body_.ask<Constants>().listed(init, i);
+    const ir::ConstId given = ask<Constants>().listed(init, i);
     if (!ir::is_structure(type.kind) && !given.valid()) continue;  // a matter of the block
     ir::Place member = at;
     if (!ir::is_structure(type.kind)) member.steps.push_back(step_to(ir::StepKind::kEnter));
@@ -94,7 +93,7 @@ void StartCode::each_element(const ir::Place& at, ir::TypeId id, ir::ConstId ini
     return loop(at, type.dims, 0, type.base, [&](const ir::Place& one) { each(one, value); });
   }
   for (uint64_t i = 0; i < total; ++i) {
-    each(element(at, type.dims, type.base, i), body_.ask<Constants>().listed(init, i));
+    each(element(at, type.dims, type.base, i), ask<Constants>().listed(init, i));
   }
 }
 
@@ -103,24 +102,23 @@ void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
   const ExprId expr = sema_.start_values.find(unbound);
   const ir::ValueId now = build_.load(at, kU64);
   when(build_.compare(ir::Op::kEq, kU64, now, build_.constant(kU64, unbound)), [&] {
-    body_.set_line(sema_.tree[expr].span);
-    build_.store(at, kU64, body_.value(expr, at.type));
+    set_line(sema_.tree[expr].span);
+    build_.store(at, kU64, value(expr, at.type));
   });
 }
 
 void StartCode::variable(VarId id) {
-  const Variable& variable = body_.resolve(id);
-  if (variable.section == VarSection::kInOut || !body_.ask<Objects>().constructs(variable.type))
-    return;
+  const Variable& variable = resolve(id);
+  if (variable.section == VarSection::kInOut || !ask<Objects>().constructs(variable.type)) return;
   const Spec* spec =
-      variable.decl == nullptr ? nullptr : body_.ask<Objects>().construction(variable.decl->spec);
-  body_.set_line(variable.name.span);
+      variable.decl == nullptr ? nullptr : ask<Objects>().construction(variable.decl->spec);
+  set_line(variable.name.span);
   span_ = variable.name.span;
-  value(body_.variable_place(id), variable.type, spec);
+  content(variable_place(id), variable.type, spec);
 }
 
-void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
-  if (!body_.ask<Objects>().constructs(type)) return;
+void StartCode::content(const ir::Place& at, ir::TypeId type, const Spec* spec) {
+  if (!ask<Objects>().constructs(type)) return;
   const ir::Kind kind = types()[type].kind;
   if (kind == ir::Kind::kArray) return elements(at, type, spec);
   if (!ir::is_structure(kind)) {
@@ -132,8 +130,10 @@ void StartCode::value(const ir::Place& at, ir::TypeId type, const Spec* spec) {
     member.type = types()[type].members[i].type;
     const StructureField* field = sema_.declared.find_field(type, types()[type].members[i].name);
     const bool whole = field != nullptr && field->bit < 0;
-    const ScopeChange outside(body_.scope_, {});  // what the members' arguments name
-    value(member, member.type, whole ? body_.ask<Objects>().construction(field->spec) : nullptr);
+    StartCode outside(body_, PouScope());  // it sees what the members' arguments name
+    outside.span_ = span_;
+    outside.content(member, member.type,
+                    whole ? outside.ask<Objects>().construction(field->spec) : nullptr);
   }
 }
 
@@ -143,16 +143,16 @@ void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec)
   const ir::TypeId base = types()[type].base;
   const bool written = spec != nullptr && spec->kind == SpecKind::kArray;
   if (!written || spec->element_args.count == 0) {
-    const Spec* inner = written ? body_.ask<Objects>().construction(spec->element) : nullptr;
-    return loop(at, dims, 0, base, [&](const ir::Place& one) { value(one, base, inner); });
+    const Spec* inner = written ? ask<Objects>().construction(spec->element) : nullptr;
+    return loop(at, dims, 0, base, [&](const ir::Place& one) { content(one, base, inner); });
   }
   uint64_t total = 1;
   for (const ir::Dimension& dim : dims) total *= dim.count();
   if (total != spec->element_args.count || !types().is_instance(base)) {
-    body_.error(DiagnosticCode::kBadConstruction, spec->span,
-                std::to_string(spec->element_args.count) + " lists of arguments for " +
-                    std::to_string(total) + " elements",
-                "give one for each, or one for all: ARRAY[..] OF Block(arguments)");
+    error(DiagnosticCode::kBadConstruction, spec->span,
+          std::to_string(spec->element_args.count) + " lists of arguments for " +
+              std::to_string(total) + " elements",
+          "give one for each, or one for all: ARRAY[..] OF Block(arguments)");
     return;
   }
   for (uint32_t i = 0; i < total; ++i) {
@@ -170,7 +170,7 @@ void StartCode::loop(const ir::Place& at, const std::vector<ir::Dimension>& dims
     return each(one);
   }
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
-  const ir::Place counter = body_.temporary_place(types().elementary(ir::Kind::kLint));
+  const ir::Place counter = temporary_place(types().elementary(ir::Kind::kLint));
   const ir::BlockId head = build_.new_block();
   const ir::BlockId body = build_.new_block();
   const ir::BlockId done = build_.new_block();
@@ -203,7 +203,7 @@ void StartCode::when(ir::ValueId condition, const std::function<void()>& then) {
 }
 
 const PouInfo* StartCode::code_of(const PouInfo& block, std::string_view name) const {
-  const uint32_t method = body_.ask<Objects>().find_code(block.number, name).code.method;
+  const uint32_t method = ask<Objects>().find_code(block.number, name).code.method;
   return method == kNoPou ? nullptr : &sema_.declared.pous[method];
 }
 
@@ -226,14 +226,14 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, boo
   ir::Place stamp = at;
   if (block.stamp.valid()) {
     stamp.steps.push_back(step_to(ir::StepKind::kEnter));
-    stamp.steps.push_back(step_to(ir::StepKind::kMember, body_.resolve(block.stamp).index));
-    stamp.type = body_.resolve(block.stamp).type;
+    stamp.steps.push_back(step_to(ir::StepKind::kMember, resolve(block.stamp).index));
+    stamp.type = resolve(block.stamp).type;
   }
   auto is = [&](uint32_t value) {
     return build_.compare(ir::Op::kEq, kU32, build_.load(stamp, kU32), number(value));
   };
   auto set = [&](uint32_t value) { build_.store(stamp, kU32, number(value)); };
-  const uint32_t made = block.stamp.valid() ? body_.ask<Objects>().stamp_of(block) : 0;
+  const uint32_t made = block.stamp.valid() ? ask<Objects>().stamp_of(block) : 0;
   if (code_of(block, kFbExit) != nullptr) {
     when(is(ir::kLeavingStamp), [&] {
       exit(at, block);
@@ -241,12 +241,12 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, boo
     });
   }
   if (block.start != kNoPou) {
-    body_.info_.callees.push_back(block.start);
+    info_.callees.push_back(block.start);
     build_.call_method(sema_.declared.pous[block.start].id, at);
   }
   if (init == nullptr && args.count != 0) {
-    body_.error(DiagnosticCode::kBadConstruction, span_,
-                quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
+    error(DiagnosticCode::kBadConstruction, span_,
+          quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
   }
   if (!block.stamp.valid()) return;
   if (new_ones) {
@@ -271,38 +271,38 @@ void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
   written.kind = ExprKind::kCall;
   written.list = args;
   written.span = span_;
-  std::vector<Body::Binding> bindings;
-  if (!bind(written, method, bindings) || !body_.check_in_outs(written, method, bindings)) return;
-  body_.info_.callees.push_back(method.number);
-  body_.evaluate_arguments(written, bindings);
+  std::vector<Binding> bindings;
+  if (!bind(written, method, bindings) || !ask<Body>().check_in_outs(written, method, bindings))
+    return;
+  info_.callees.push_back(method.number);
+  ask<Body>().evaluate_arguments(written, bindings);
   if (!sema_.started.change_flag.valid()) return;  // there are errors
-  const ir::Place flag = body_.variable_place(sema_.started.change_flag);
+  const ir::Place flag = variable_place(sema_.started.change_flag);
   const ir::ValueId changed =
       build_.compare(ir::Op::kNe, ir::Scalar::kU32, build_.load(flag, ir::Scalar::kU32), number(0));
-  for (const Body::Binding& binding : bindings) {
-    body_.pass_input(binding, body_.argument_place(method, body_.resolve(binding.variable)));
+  for (const Binding& binding : bindings) {
+    ask<Body>().pass_input(binding, ask<Body>().argument_place(method, resolve(binding.variable)));
   }
-  body_.pass_defaults(method, bindings);
+  ask<Body>().pass_defaults(method, bindings);
   for (VarId id : method.locals) {
-    const Variable& variable = body_.resolve(id);
+    const Variable& variable = resolve(id);
     if (variable.section != VarSection::kInput || !is_implicit(variable.name)) continue;
     if (!traits_of(types(), variable.type).boolean) continue;
     // What is made has its initial values, retained variables too.
     const bool retains = ir::same_name(variable.name.text, kImplicit[0]);
-    build_.store(body_.argument_place(method, variable), kBool,
+    build_.store(ask<Body>().argument_place(method, variable), kBool,
                  retains ? build_.constant(kBool, 1) : changed);
   }
   build_.call_method(method.id, at);
 }
 
 // bInitRetains and bInCopyCode are given by the system; the others by the declaration.
-bool StartCode::bind(const Expr& call, const PouInfo& method,
-                     std::vector<Body::Binding>& bindings) {
+bool StartCode::bind(const Expr& call, const PouInfo& method, std::vector<Binding>& bindings) {
   const std::string name(method.decl->name.text);
   const std::string of = name + " of " + quoted_name(sema_.declared.pous[method.owner].decl->name);
   std::vector<VarId> parameters;
   for (VarId id : method.locals) {
-    const Variable& variable = body_.resolve(id);
+    const Variable& variable = resolve(id);
     const bool input =
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
     if (input && !is_implicit(variable.name)) parameters.push_back(id);
@@ -310,30 +310,29 @@ bool StartCode::bind(const Expr& call, const PouInfo& method,
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = sema_.tree.args[call.list.first + i];
     if (arg.output) {
-      body_.error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
+      error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
       return false;
     }
     if (!arg.name.empty()) {
-      if (!body_.bind_named(arg, method, bindings)) return false;
+      if (!ask<Body>().bind_named(arg, method, bindings)) return false;
     } else if (i >= parameters.size()) {
-      body_.error(DiagnosticCode::kBadConstruction, arg.span,
-                  of + " takes " + std::to_string(parameters.size()) + " arguments");
+      error(DiagnosticCode::kBadConstruction, arg.span,
+            of + " takes " + std::to_string(parameters.size()) + " arguments");
       return false;
     } else if (arg.value.valid()) {
       bindings.push_back({parameters[i], &arg, {}, {}, {}});
     }
   }
   for (VarId id : parameters) {
-    const Variable& variable = body_.resolve(id);
+    const Variable& variable = resolve(id);
     bool given = variable.decl != nullptr && variable.decl->init.valid();
-    for (const Body::Binding& binding : bindings) given = given || binding.variable == id;
+    for (const Binding& binding : bindings) given = given || binding.variable == id;
     if (given) continue;
-    body_.error(DiagnosticCode::kBadConstruction, call.span,
-                of + " needs " + quoted_name(variable.name),
-                ir::same_name(name, kFbInit)
-                    ? "give it in the declaration: name : Block(" +
-                          std::string(variable.name.text) + " := value);"
-                    : "give it an initial value: nobody calls " + name + " with arguments");
+    error(DiagnosticCode::kBadConstruction, call.span, of + " needs " + quoted_name(variable.name),
+          ir::same_name(name, kFbInit)
+              ? "give it in the declaration: name : Block(" + std::string(variable.name.text) +
+                    " := value);"
+              : "give it an initial value: nobody calls " + name + " with arguments");
     return false;
   }
   return true;

@@ -1,16 +1,21 @@
 // The code of __START (sema/start.cc): FB_Init of every new instance, inner ones first, with the
 // arguments that its declaration gives; FB_Exit of those that leave, FB_Reinit of those whose type
-// a change has changed. Which is which, their stamps say (ir/types/stamps.h). A part of Body: it
-// writes to the same POU.
+// a change has changed. Which is which, their stamps say (ir/types/stamps.h).
 #pragma once
 
-#include "frontend/lower/body.h"
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "frontend/lower/body_phase.h"
+#include "frontend/lower/call.h"
 
 namespace frontend {
 
-class StartCode {
+class StartCode : public BodyPhase {
  public:
-  explicit StartCode(Body& body) : body_(body), build_(body.build_), sema_(body.sema_) {}
+  using BodyPhase::BodyPhase;
+
   void run();
   // Gives the references inside of `at` their values, where `init` says that they are unbound.
   void bind_references(const ir::Place& at, ir::TypeId type, ir::ConstId init);
@@ -30,7 +35,7 @@ class StartCode {
   void references(const std::vector<VarId>& variables);
   void bind_reference(const ir::Place& at, uint64_t unbound);
   void variable(VarId id);
-  void value(const ir::Place& at, ir::TypeId type, const Spec* spec);
+  void content(const ir::Place& at, ir::TypeId type, const Spec* spec);
   void elements(const ir::Place& at, ir::TypeId type, const Spec* spec);
   using PerElement = std::function<void(const ir::Place&)>;
   void loop(const ir::Place& at, const std::vector<ir::Dimension>& dims, size_t number,
@@ -38,13 +43,9 @@ class StartCode {
   void instance(const ir::Place& at, ir::TypeId type, Range32 args, bool new_ones = true);
   const PouInfo* code_of(const PouInfo& block, std::string_view name) const;
   void call(const ir::Place& at, const PouInfo& method, Range32 args);
-  bool bind(const Expr& call, const PouInfo& method, std::vector<Body::Binding>& bindings);
+  bool bind(const Expr& call, const PouInfo& method, std::vector<Binding>& bindings);
   ir::ValueId number(uint32_t value) { return build_.constant(ir::Scalar::kU32, value); }
-  const ir::TypeTable& types() const { return sema_.program.types; }
 
-  Body& body_;
-  Builder& build_;
-  Sema& sema_;
   base::SourceSpan span_;  // of the variable that is constructed
 };
 

@@ -5,8 +5,8 @@
 namespace frontend {
 
 void Body::statements(Range32 list) {
-  if (labels_.empty()) infer_results(list);
-  labels_.push_back({labels_of(list), tries_.size()});
+  if (body_.flow.labels.empty()) infer_results(list);
+  body_.flow.labels.push_back({labels_of(list), body_.flow.tries.size()});
   bool warned = false;
   bool was_reachable = build_.reachable();
   for (uint32_t i = 0; i < list.count; ++i) {
@@ -20,12 +20,12 @@ void Body::statements(Range32 list) {
     }
     statement(stmt);
   }
-  labels_.pop_back();
+  body_.flow.labels.pop_back();
 }
 
 void Body::statement(const Stmt& stmt) {
   set_line(stmt.span);
-  counting_.statement(stmt);
+  body_.counting.statement(stmt);
   switch (stmt.kind) {
     case StmtKind::kError:
     case StmtKind::kEmpty:
@@ -85,7 +85,8 @@ void Body::if_statement(const Stmt& stmt) {
       warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
               "this condition is always the same");
     }
-    counting_.decide(condition(branch.condition), then, otherwise, at, i == 0 ? "IF" : "ELSIF");
+    body_.counting.decide(condition(branch.condition), then, otherwise, at,
+                          i == 0 ? "IF" : "ELSIF");
     build_.start(then);
     statements(branch.body);
     if (build_.reachable()) build_.jump(done);
@@ -99,16 +100,16 @@ void Body::if_statement(const Stmt& stmt) {
 
 // Returns whether anything in it leaves the loop.
 bool Body::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
-  loops_.push_back({again, exit, tries_.size(), false});
+  body_.flow.loops.push_back({again, exit, body_.flow.tries.size(), false});
   statements(body);
-  const bool left = loops_.back().left;
-  loops_.pop_back();
+  const bool left = body_.flow.loops.back().left;
+  body_.flow.loops.pop_back();
   if (build_.reachable()) build_.jump(again);
   return left;
 }
 
 void Body::leave_loops() {
-  for (Loop& loop : loops_) loop.left = true;
+  for (Flow::Loop& loop : body_.flow.loops) loop.left = true;
 }
 
 // `goes_on`: the value of the condition with which there is another round.
@@ -129,7 +130,7 @@ void Body::while_statement(const Stmt& stmt) {
   ir::BlockId exit = build_.new_block();
   build_.jump(head);
   build_.start(head);
-  counting_.decide(condition(stmt.value), body, exit, tree_[stmt.value].span.begin, "WHILE");
+  body_.counting.decide(condition(stmt.value), body, exit, tree_[stmt.value].span.begin, "WHILE");
   build_.start(body);
   if (!loop_body(stmt.body, head, exit)) check_end(stmt.value, true);
   build_.start(exit);
@@ -143,20 +144,21 @@ void Body::repeat_statement(const Stmt& stmt) {
   build_.start(body);
   if (!loop_body(stmt.body, test, exit)) check_end(stmt.value, false);
   build_.start(test);
-  counting_.decide(condition(stmt.value), exit, body, tree_[stmt.value].span.begin, "UNTIL");
+  body_.counting.decide(condition(stmt.value), exit, body, tree_[stmt.value].span.begin, "UNTIL");
   build_.start(exit);
 }
 
 void Body::leave_loop(const Stmt& stmt) {
   bool exit = stmt.kind == StmtKind::kExit;
-  if (loops_.empty()) {
+  if (body_.flow.loops.empty()) {
     error(DiagnosticCode::kExitOutsideLoop, stmt.span,
           std::string(exit ? "EXIT" : "CONTINUE") + " stands in no loop",
           exit ? "RETURN leaves the POU" : "");
     return;
   }
-  if (exit) loops_.back().left = true;
-  go(exit ? loops_.back().exit : loops_.back().again, loops_.back().tries);
+  if (exit) body_.flow.loops.back().left = true;
+  go(exit ? body_.flow.loops.back().exit : body_.flow.loops.back().again,
+     body_.flow.loops.back().tries);
 }
 
 }  // namespace frontend

@@ -27,6 +27,12 @@ struct Attempt {
   ir::ValueId handle;
 };
 
+// What a call gives: the scalar result, or its place in a temporary.
+struct CallResult {
+  ir::ValueId value;
+  ir::Place place;
+};
+
 // Something that can be assigned: a place, a character of a string place, or some bits of either.
 struct Target {
   ir::Place place;

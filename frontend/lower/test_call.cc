@@ -219,8 +219,8 @@ ir::Place Body::text_of(Typed value) {
 
 // Three buffers serve all messages of a body; neither operand is overwritten.
 ir::Place Body::joined(const ir::Place& first, const ir::Place& second) {
-  if (message_buffers_[0] == kNoLocal) {
-    for (uint32_t& buffer : message_buffers_) {
+  if (body_.message_buffers[0] == Lowering::kNoLocal) {
+    for (uint32_t& buffer : body_.message_buffers) {
       buffer = build_.temporary(sema_.program.types.string(kMessageText));
     }
   }
@@ -228,8 +228,9 @@ ir::Place Body::joined(const ir::Place& first, const ir::Place& second) {
     return place.base == ir::PlaceBase::kLocal && place.base_index == buffer;
   };
   size_t free = 0;
-  while (holds(first, message_buffers_[free]) || holds(second, message_buffers_[free])) ++free;
-  const ir::Place out = local_place(message_buffers_[free]);
+  while (holds(first, body_.message_buffers[free]) || holds(second, body_.message_buffers[free]))
+    ++free;
+  const ir::Place out = local_place(body_.message_buffers[free]);
   code_.native(NativeId::kConcatS,
                {code_.string_value(out), code_.string_value(first), code_.string_value(second)});
   return out;

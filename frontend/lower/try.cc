@@ -22,10 +22,10 @@ void Body::try_statement(const Stmt& stmt) {
 }
 
 void Body::enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan span) {
-  TryScope scope;
+  Flow::Try scope;
   scope.outer = build_.set_handler(handler);
   scope.finally = finally;
-  if (tries_.size() == base::kMaxTryDepth) {
+  if (body_.flow.tries.size() == base::kMaxTryDepth) {
     error(DiagnosticCode::kTooDeep, span,
           "more than " + std::to_string(base::kMaxTryDepth) + " levels of __TRY",
           "move a part into a function");
@@ -34,21 +34,21 @@ void Body::enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan 
   ir::BlockId body = build_.new_block();
   build_.begin_try(body, handler);
   build_.start(body);
-  tries_.push_back(std::move(scope));
+  body_.flow.tries.push_back(std::move(scope));
 }
 
 void Body::leave_try() {
-  build_.set_handler(tries_.back().outer);
-  tries_.pop_back();
+  build_.set_handler(body_.flow.tries.back().outer);
+  body_.flow.tries.pop_back();
 }
 
 // Goes to `to`, which `tries` of the scopes are around; invalid: out of the POU.
 void Body::go(ir::BlockId to, size_t tries) {
   const ir::BlockId handler = build_.set_handler({});
-  size_t at = tries_.size();
+  size_t at = body_.flow.tries.size();
   bool done = false;
   while (at > tries && !done) {
-    TryScope& scope = tries_[--at];
+    Flow::Try& scope = body_.flow.tries[--at];
     ir::BlockId outside = build_.new_block();
     build_.end_try(outside);
     build_.set_handler(scope.outer);
@@ -61,7 +61,7 @@ void Body::go(ir::BlockId to, size_t tries) {
     done = true;
   }
   if (!done) {
-    if (!to.valid()) to = exit_;
+    if (!to.valid()) to = body_.flow.exit;
     if (to.valid()) {
       build_.jump(to);
     } else {
@@ -78,8 +78,8 @@ void Body::try_finally(const std::function<void()>& body, Range32 finally_body,
   ir::BlockId behind = build_.new_block();
   enter_try(handler, finally, span);
   body();
-  if (build_.reachable()) go(behind, tries_.size() - 1);
-  const TryScope scope = std::move(tries_.back());
+  if (build_.reachable()) go(behind, body_.flow.tries.size() - 1);
+  const Flow::Try scope = std::move(body_.flow.tries.back());
   leave_try();
 
   constexpr ir::Scalar kU32 = ir::Scalar::kU32;
@@ -110,7 +110,7 @@ void Body::try_catch(const Stmt& stmt) {
   ir::BlockId behind = build_.new_block();
   enter_try(handler, {}, stmt.span);
   statements(stmt.body);
-  if (build_.reachable()) go(behind, tries_.size() - 1);
+  if (build_.reachable()) go(behind, body_.flow.tries.size() - 1);
   leave_try();
   build_.start(handler);
   if (stmt.target.valid()) catch_variable(stmt);

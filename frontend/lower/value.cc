@@ -79,8 +79,8 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
     return interface_value(id, target);
   }
   if (is_known(note)) {
-    auto bits =
-        ask<Constants>().fold_bits(id, target, evaluating_ ? Known::kInitially : Known::kConstant);
+    auto bits = ask<Constants>().fold_bits(id, target,
+                                           body_.evaluating ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     return bits ? build_.constant(scalar(target), *bits) : code_.zero(target);
   }

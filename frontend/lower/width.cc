@@ -60,8 +60,8 @@ ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
   const Expr& expr = tree_[id];
   const ir::Scalar machine = scalar(type);
   if (is_known(note)) {
-    const auto known = ask<Constants>().fold(id, elementary(ir::Kind::kDint),
-                                             evaluating_ ? Known::kInitially : Known::kConstant);
+    const auto known = ask<Constants>().fold(
+        id, elementary(ir::Kind::kDint), body_.evaluating ? Known::kInitially : Known::kConstant);
     set_line(expr.span);
     const Wide number = known ? wrap_to(machine, known->integer) : 0;
     return build_.constant(machine, static_cast<uint64_t>(number));

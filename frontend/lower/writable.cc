@@ -158,7 +158,8 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
   if (variable->decl != nullptr && variable->decl->has_address) {
     note_output(variable->decl->address, variable->type, expr.span);
   }
-  if (std::find(for_variables_.begin(), for_variables_.end(), id) != for_variables_.end()) {
+  if (std::find(body_.flow.for_variables.begin(), body_.flow.for_variables.end(), id) !=
+      body_.flow.for_variables.end()) {
     warning(DiagnosticCode::kForVariableAssigned, expr.span,
             name() + " counts the surrounding FOR loop");
   }

@@ -59,19 +59,4 @@ class Phase {
   const Variable& resolve_anew(VarId id) const;
 };
 
-// For who looks from another scope for a while.
-class ScopeChange {
- public:
-  ScopeChange(PouScope& scope, const PouScope& other) : scope_(scope), before_(scope) {
-    scope = other;
-  }
-  ~ScopeChange() { scope_ = before_; }
-  ScopeChange(const ScopeChange&) = delete;
-  ScopeChange& operator=(const ScopeChange&) = delete;
-
- private:
-  PouScope& scope_;
-  PouScope before_;
-};
-
 }  // namespace frontend
