@@ -1,5 +1,6 @@
 // Arguments of POUs: which goes to which parameter.
 #include "frontend/lower/body.h"
+#include "frontend/lower/call.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/objects.h"
 

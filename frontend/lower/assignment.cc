@@ -1,14 +1,17 @@
 // Assignments, also as expressions: `a := b := 3`, `x S= y`. The indices of the left side
 // are evaluated first, then the value.
 #include "frontend/lower/body.h"
+#include "frontend/lower/current_results.h"
+#include "frontend/lower/references.h"
+#include "frontend/lower/targets.h"
 #include "frontend/sema/constants.h"
 
 namespace frontend {
 
 void Body::assign(const Stmt& stmt) {
-  if (stmt.assign == AssignOp::kReference) return bind_reference(stmt);
+  if (stmt.assign == AssignOp::kReference) return ask<References>().bind_reference(stmt);
   if (stmt.assign == AssignOp::kAttempt) {
-    attempt(stmt.target, stmt.value, stmt.span);
+    ask<References>().attempt(stmt.target, stmt.value, stmt.span);
     return;
   }
   if (stmt.assign == AssignOp::kSet || stmt.assign == AssignOp::kReset) {
@@ -22,7 +25,8 @@ void Body::assign(const Stmt& stmt) {
     }
     set_or_reset(stmt.assign, stmt.target, stmt.value, stmt.span);
   } else if (stmt.assign == AssignOp::kAssign) {
-    if (tree_[stmt.target].kind == ExprKind::kResult) return keep_result(stmt);
+    if (tree_[stmt.target].kind == ExprKind::kResult)
+      return ask<CurrentResults>().keep_result(stmt);
     assign_value(stmt.target, stmt.value, stmt.span);
   }
 }
@@ -83,10 +87,10 @@ ir::ValueId Body::emit_assignment(const Expr& expr) {
     return set_or_reset(expr.assign, expr.operand, expr.right, expr.span);
   }
   if (expr.assign == AssignOp::kAttempt) {
-    return attempt(expr.operand, expr.right, expr.span).handle;
+    return ask<References>().attempt(expr.operand, expr.right, expr.span).handle;
   }
   auto to = assign_value(expr.operand, expr.right, expr.span);
-  return to ? load(*to) : code_.zero(infer(expr.operand).type);
+  return to ? ask<Targets>().load(*to) : code_.zero(infer(expr.operand).type);
 }
 
 ir::Place Body::assignment_place(ExprId id, const Expr& expr) {

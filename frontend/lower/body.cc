@@ -1,10 +1,11 @@
-#include "frontend/lower/body.h"
-
 #include <algorithm>
 
 #include "base/hash.h"
+#include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
 #include "frontend/lower/pool_code.h"
+#include "frontend/lower/start_code.h"
+#include "frontend/lower/value_code.h"
 
 namespace frontend {
 

@@ -12,6 +12,7 @@
 
 #include "frontend/lower/body_phase.h"
 #include "frontend/lower/call.h"
+#include "frontend/lower/enable.h"
 #include "frontend/lower/handles.h"
 #include "stdlib/native/natives.h"
 
@@ -41,7 +42,6 @@ class Body : public BodyPhase {
   ir::Place assignment_place(ExprId id, const Expr& expr);
   void assign_aggregate(const Target& target, ExprId value);
   void call_statement(const Stmt& stmt);
-  ir::ValueId condition(ExprId expr);
   bool loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
   void leave_loops();
   void check_end(ExprId condition, bool goes_on);
@@ -82,91 +82,7 @@ class Body : public BodyPhase {
   void case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next);
   void case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next);
 
-  // --- what may be written (writable.cc)
-  bool has_address(ExprId expr);
-  bool check_writable(ExprId expr);
-  bool check_writable_name(const Expr& expr);
-  bool check_writable_variable(const Expr& expr, VarId variable);
-  bool check_writable_field(const Expr& expr);
-  bool is_input_field(const Expr& expr);
-
-  // --- places (place.cc)
-  ir::Place variable_place(VarId id);
-  ir::Place view_place(const AddressView& view);
-  ir::Place view_place(ExprId id);
-  ir::Place place(ExprId expr);
-  ir::Place raw_place(ExprId expr);
-  ir::Place member_place(const Expr& expr);
-  ir::Place property_place(ExprId id);
-  ir::Place index_place(const Expr& expr);
-  ir::Place bit_word_place(ExprId structure, const Note& part);
-  ir::Place constant_place(ExprId expr);
-  void note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span);
-  void note_outer_use(VarId global, bool written, base::SourceSpan span);
-  std::optional<Target> target(ExprId expr);
-  void store(const Target& target, ir::ValueId value);
-  ir::Scalar base_scalar(const Target& target) const;
-  ir::ValueId load(const Target& target);
-  ir::ValueId load_base(const Target& target);
-  void store_base(const Target& target, ir::ValueId value);
-
-  // --- the current result of instruction lists (result.cc)
-  void infer_results(Range32 list);
-  void keep_result(const Stmt& stmt);
-  ir::ValueId emit_result(ExprId id);
-  ir::Place result_place(const Expr& expr, ir::TypeId type);
-
-  // --- characters of strings (character.cc)
-  bool is_character(ExprId expr);
-  ir::ValueId character_position(const Expr& expr);
-  ir::ValueId emit_character(const Expr& expr);
-
-  // --- pointers and references (reference.cc)
-  ir::Place dereferenced_place(const Expr& expr);
-  ir::Place addressable_place(ExprId id);
-  ir::ValueId handle_of(ExprId id);
-  ir::ValueId raw_reference(ExprId id);
-  ir::ValueId reference_value(ExprId id, ir::TypeId target);
-  void bind_reference(const Stmt& stmt);
-  ir::ValueId interface_value(ExprId id, ir::TypeId target);
-  ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);
-  ir::ValueId emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
-  MovedPointer moved_pointer(BinaryOp op, ExprId left, ExprId right);
-  MovedPointer pointer_of_sum(ExprId id);
-  bool is_distance(ExprId id);
-  ir::ValueId convert_reference(Typed from, ir::TypeId to, base::SourceSpan span);
-  ir::ValueId constant_reference(ExprId id);
-
-  // --- values (value.cc, operator.cc)
-  // The scalar value of `expr` as `target`, converted and checked.
-  ir::ValueId value(ExprId expr, ir::TypeId target);
-  Typed natural(ExprId expr);  // in its own type; literals take their default type
-  ir::ValueId stored(ExprId sum, ir::TypeId target);  // width.cc: an intermediate result
-  ir::ValueId computed_in(ExprId id, ir::TypeId type);
-  ir::ValueId emit(ExprId expr, ir::TypeId own);
-  ir::TypeId own_type(const Note& note, ir::TypeId target) const;
-  ir::ValueId emit_bit(ExprId id);
-  ir::ValueId emit_unary(const Expr& expr, ir::TypeId own);
-  ir::ValueId emit_binary(const Expr& expr, ir::TypeId own);
-  ir::ValueId emit_lazy(const Expr& expr);
-  ir::ValueId emit_comparison(BinaryOp op, ExprId left, ExprId right);
-  ir::ValueId compare_strings(BinaryOp op, ExprId left, ExprId right);
-  ir::ValueId emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
-
-  // --- conversions (convert.cc)
-  ir::ValueId convert(Typed from, ir::TypeId to, base::SourceSpan span);
-  bool fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span);  // or says why not
-  // --- of strings (string_convert.cc)
-  ir::Place to_string(const Expr& call, const Conversion& conversion, ir::TypeId type);
-  ir::Place string_to_string(ExprId source, ir::TypeId type);
-  void write_text(const ir::Place& text, Typed source);
-  void write_enumerator_name(const ir::Place& text, Typed source);
-  ir::ValueId from_string(ExprId source, ir::TypeId to);
-  ir::ValueId character_of(const ir::Place& text, ir::TypeId to);
-  ir::Place narrow_string(ir::Place source, bool wide);
-
   // --- EN and ENO (enable.cc)
-  struct Enable;
   std::optional<Enable> enable_of(const Expr& call, const Callee& callee);
   void open_enable(Enable& enable);
   // `type` is that of the result, invalid when there is none; `otherwise` its value without a call.
@@ -201,7 +117,6 @@ class Body : public BodyPhase {
   void call_statement(ExprId id, const Callee& callee);
   ir::Place call_place(ExprId id, const Expr& expr);
   ir::Place call_place(const Expr& expr, const Callee& callee, ir::TypeId type);
-  ir::ValueId emit_conversion(const Expr& expr, const Conversion& conversion);
 
   // --- methods, properties, type tests (method.cc, type_test.cc)
   Receiver receiver_of(const Expr& head);
@@ -215,8 +130,6 @@ class Body : public BodyPhase {
   void set_property(const Target& target, std::optional<ir::ValueId> value);
   void settle(const Target& target);
   void bare_call(ExprId id);
-  std::optional<ir::ValueId> object_handle(ExprId id);
-  Attempt attempt(ExprId left, ExprId right, base::SourceSpan span);
 
   // --- tests (test_call.cc, mock.cc)
   void test_call(const Expr& call, const TestCallRow& row);

@@ -1,27 +1,29 @@
 #include "frontend/lower/body_phase.h"
-
-#include "frontend/lower/body.h"
+#include "frontend/lower/conversions.h"
+#include "frontend/lower/places.h"
+#include "frontend/lower/targets.h"
+#include "frontend/lower/values.h"
 
 namespace frontend {
 
 ir::ValueId BodyPhase::value(ExprId expr, ir::TypeId target) const {
-  return ask<Body>().value(expr, target);
+  return ask<Values>().value(expr, target);
 }
 
-Typed BodyPhase::natural(ExprId expr) const { return ask<Body>().natural(expr); }
+Typed BodyPhase::natural(ExprId expr) const { return ask<Values>().natural(expr); }
 
 ir::ValueId BodyPhase::convert(Typed from, ir::TypeId to, base::SourceSpan span) const {
-  return ask<Body>().convert(from, to, span);
+  return ask<Conversions>().convert(from, to, span);
 }
 
-ir::Place BodyPhase::place(ExprId expr) const { return ask<Body>().place(expr); }
+ir::Place BodyPhase::place(ExprId expr) const { return ask<Places>().place(expr); }
 
-ir::Place BodyPhase::variable_place(VarId id) const { return ask<Body>().variable_place(id); }
+ir::Place BodyPhase::variable_place(VarId id) const { return ask<Places>().variable_place(id); }
 
-std::optional<Target> BodyPhase::target(ExprId expr) const { return ask<Body>().target(expr); }
+std::optional<Target> BodyPhase::target(ExprId expr) const { return ask<Targets>().target(expr); }
 
 void BodyPhase::store(const Target& target, ir::ValueId value) const {
-  ask<Body>().store(target, value);
+  ask<Targets>().store(target, value);
 }
 
 ir::Place BodyPhase::member_variable_place(const Variable& variable) const {

@@ -45,13 +45,13 @@ class BodyPhase : public Phase {
   }
 
  protected:
-  // --- values (value.cc, convert.cc)
+  // --- values (values.h, conversions.h)
   // The scalar value of `expr` as `target`, converted and checked.
   ir::ValueId value(ExprId expr, ir::TypeId target) const;
   Typed natural(ExprId expr) const;  // in its own type; literals take their default type
   ir::ValueId convert(Typed from, ir::TypeId to, base::SourceSpan span) const;
 
-  // --- places (place.cc)
+  // --- places (places.h, targets.h)
   ir::Place place(ExprId expr) const;
   ir::Place variable_place(VarId id) const;
   // Evaluates the indices of an assignment's left side; reports what cannot be written.

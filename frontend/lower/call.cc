@@ -1,6 +1,11 @@
 // Calls of functions and function block instances, by the call discipline of
 // ir/program/ir.h: everything is evaluated first, then passed, then called.
+#include "frontend/lower/call.h"
 #include "frontend/lower/body.h"
+#include "frontend/lower/conversions.h"
+#include "frontend/lower/places.h"
+#include "frontend/lower/references.h"
+#include "frontend/lower/write_checks.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/standard_calls.h"
 
@@ -73,14 +78,15 @@ bool Body::evaluate_in_out(Binding& binding) {
   const Note& note = infer(id);
   if (!note.type.valid() || !parameter.type.valid()) return false;
   if (parameter.by_reference) {
-    binding.value = reference_value(id, parameter.type);
+    binding.value = ask<References>().reference_value(id, parameter.type);
     return true;
   }
   const bool convertible = types().is_scalar(note.type) || is_string(types(), note.type);
-  const bool copied = !has_address(id) || (convertible && note.type != parameter.type);
+  const bool copied =
+      !ask<WriteChecks>().has_address(id) || (convertible && note.type != parameter.type);
   if (parameter.constant && copied) return evaluate_read_only(binding);
-  if (!parameter.constant && !check_writable(id)) return false;
-  if (note.bit_size != 0 || is_character(id)) {
+  if (!parameter.constant && !ask<WriteChecks>().check_writable(id)) return false;
+  if (note.bit_size != 0 || ask<Places>().is_character(id)) {
     error(DiagnosticCode::kInOutNeedsVariable, binding.arg->span,
           quoted_name(parameter.name) + " cannot be bound to a part of a variable",
           "copy the part into a variable of its own and pass that");
@@ -333,9 +339,9 @@ ir::ValueId Body::emit_call(const Expr& expr, const Callee& callee, ir::TypeId o
     case Callee::Kind::kStandard:
       return emit_standard(expr, callee, own);
     case Callee::Kind::kConversion:
-      return emit_conversion(expr, callee.conversion);
+      return ask<Conversions>().emit_conversion(expr, callee.conversion);
     case Callee::Kind::kReference:
-      return emit_reference_call(expr, callee.reference, own);
+      return ask<References>().emit_reference_call(expr, callee.reference, own);
     default:
       return code_.zero(own);
   }
@@ -347,7 +353,8 @@ ir::Place Body::call_place(const Expr& expr, const Callee& callee, ir::TypeId ty
     CallResult result = call_function(expr, callee, true);
     return result.place.type.valid() ? result.place : temporary_place(type);
   }
-  if (callee.kind == Callee::Kind::kConversion) return to_string(expr, callee.conversion, type);
+  if (callee.kind == Callee::Kind::kConversion)
+    return ask<Conversions>().to_string(expr, callee.conversion, type);
   if (callee.kind != Callee::Kind::kStandard) return temporary_place(type);
   std::vector<ExprId> args = ask<StandardCalls>().standard_arguments(expr, *callee.row);
   using stdlib::FunctionRule;

@@ -1,18 +1,20 @@
 // Characters of strings: s[i]. Positions are checked against the capacity.
-#include "frontend/lower/body.h"
+#include "frontend/lower/places.h"
+#include "frontend/lower/value_code.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 
 namespace frontend {
 
 using stdlib::NativeId;
 
-bool Body::is_character(ExprId id) {
+bool Places::is_character(ExprId id) {
   const Expr& expr = tree_[id];
   return expr.kind == ExprKind::kIndex && is_string(types(), infer(expr.operand).type);
 }
 
 // From 0, whatever the dialect counts from.
-ir::ValueId Body::character_position(const Expr& expr) {
+ir::ValueId Places::character_position(const Expr& expr) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   ExprId index = tree_.expr_lists[expr.list.first];
   int64_t first = sema_.options.dialect == Dialect::kIec ? 1 : 0;
@@ -37,9 +39,9 @@ ir::ValueId Body::character_position(const Expr& expr) {
   return position;
 }
 
-ir::ValueId Body::emit_character(const Expr& expr) {
+ir::ValueId Values::emit_character(const Expr& expr) {
   ir::Place string = place(expr.operand);
-  return code_.load_character(string, character_position(expr));
+  return code_.load_character(string, ask<Places>().character_position(expr));
 }
 
 ir::ValueId ValueCode::load_character(const ir::Place& string, ir::ValueId position) {

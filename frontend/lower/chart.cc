@@ -1,10 +1,10 @@
 // Sequential function charts: where their state lies, and the flags of one call. Steps and
 // transitions: chart_steps.cc; actions: chart_actions.cc.
-#include "frontend/lower/chart.h"
-#include "frontend/lower/body.h"
-
 #include <algorithm>
 
+#include "frontend/lower/body.h"
+#include "frontend/lower/chart.h"
+#include "frontend/lower/values.h"
 #include "frontend/sfc/declare.h"
 
 namespace frontend {
@@ -34,7 +34,7 @@ void ChartBody::run() {
 // A name that means something else, too, has been reported; what remains is only checked.
 void ChartBody::report_all() {
   for (const ChartTransition& transition : chart_.transitions) {
-    if (transition.condition.valid()) ask<Body>().condition(transition.condition);
+    if (transition.condition.valid()) ask<Values>().condition(transition.condition);
   }
   for (const sfc::Action& action : net_.actions) {
     if (action.decl == nullptr) variable_of(action);

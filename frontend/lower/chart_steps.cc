@@ -1,8 +1,8 @@
 // Step times, transitions and moves of charts.
 #include <algorithm>
 
-#include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
+#include "frontend/lower/values.h"
 
 namespace frontend {
 namespace {
@@ -150,7 +150,7 @@ void ChartBody::active_step(uint32_t step) {
     set_line(decl.span);
     if (decl.condition.valid()) {
       next = build_.new_block();
-      go_on_if(ask<Body>().condition(decl.condition), true, next);
+      go_on_if(ask<Values>().condition(decl.condition), true, next);
     }
     count_transition(t);
     fire(t);
@@ -194,7 +194,7 @@ void ChartBody::transition(uint32_t number) {
     if (spent_[step] != sfc::kNone) go_on_if(is_raised(spent_[step]), false, next);
   }
   if (transition.decl->condition.valid())
-    go_on_if(ask<Body>().condition(transition.decl->condition), true, next);
+    go_on_if(ask<Values>().condition(transition.decl->condition), true, next);
   count_transition(number);
   fire(number);
   for (uint32_t step : transition.from) raise(spent_[step]);

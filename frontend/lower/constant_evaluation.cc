@@ -1,6 +1,7 @@
 // Constant calls: `N : INT := MAX(A, 3)` is lowered to a function of its own, which the
 // evaluator runs. So there is one definition of what each standard function does.
 #include "frontend/lower/body.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/width.h"
 #include "ir/program/evaluate.h"
 
@@ -16,10 +17,10 @@ std::optional<Constant> Body::evaluate(ExprId id, ir::TypeId context) {
   body_.lines.leave_out(span.begin);
   Note note = infer(id);
   const bool wide = note.width == Width::kWide;
-  ir::TypeId type =
-      without_range(types(), wide ? computed_type(sema_, note) : own_type(note, context));
+  ir::TypeId type = without_range(
+      types(), wide ? computed_type(sema_, note) : ask<Values>().own_type(note, context));
   if (types().is_scalar(type)) {
-    ir::ValueId value = emit(id, type);
+    ir::ValueId value = ask<Values>().emit(id, type);
     ir::Place result = temporary_place(type);
     build_.store(result, scalar(type), value);
     return run_alone(result.base_index, span);

@@ -1,7 +1,9 @@
 // Conversions. Implicit ones are lossless or reported; explicit ones follow
 // docs/LANGUAGE.md: reals round half to even and trap when out of range,
 // integers keep their low bits, times count in the unit of their type.
-#include "frontend/lower/body.h"
+#include "frontend/lower/conversions.h"
+#include "frontend/lower/references.h"
+#include "frontend/lower/value_code.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/width.h"
 #include "ir/types/time_units.h"
@@ -55,16 +57,16 @@ ir::ValueId ValueCode::machine_convert(ir::ValueId value, ir::Scalar from, ir::S
 }
 
 // Implicit: what the context needs from what is there.
-ir::ValueId Body::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
+ir::ValueId Conversions::convert(Typed from, ir::TypeId to, base::SourceSpan span) {
   if (types().is_reference(from.type) || types().is_reference(to)) {
-    return convert_reference(from, to, span);
+    return ask<References>().convert_reference(from, to, span);
   }
   if (!fits(from.type, to, span)) return code_.zero(to);
   ir::ValueId out = code_.machine_convert(from.value, scalar(from.type), scalar(to));
   return code_.check_range(out, from.type, to);
 }
 
-bool Body::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
+bool Conversions::fits(ir::TypeId from, ir::TypeId to, base::SourceSpan span) {
   switch (implicit_fit(types(), from, to, sema_.options.dialect)) {
     case Fit::kNone:
       error(DiagnosticCode::kTypeMismatch, span,
@@ -177,7 +179,7 @@ ir::ValueId ValueCode::time_to_time(Typed from, ir::TypeId to) {
   return from.value;
 }
 
-ir::ValueId Body::emit_conversion(const Expr& expr, const Conversion& conversion) {
+ir::ValueId Conversions::emit_conversion(const Expr& expr, const Conversion& conversion) {
   ExprId argument = ask<Calls>().conversion_argument(expr);
   ir::TypeId to = elementary(conversion.to);
   const Note& note = infer(argument);

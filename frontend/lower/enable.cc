@@ -2,12 +2,12 @@
 // FALSE nothing is called, ENO is FALSE, outputs keep what they had, and a function's
 // result is the default of its type. The same when the call, or an argument of it, traps and ENO is
 // connected. Who declares parameters of these names has them.
-#include "frontend/lower/enable.h"
+#include "frontend/lower/body.h"
 #include "frontend/sema/calls.h"
 
 namespace frontend {
 
-std::optional<Body::Enable> Body::enable_of(const Expr& call, const Callee& callee) {
+std::optional<Enable> Body::enable_of(const Expr& call, const Callee& callee) {
   const PouInfo* pou = callee.pou == kNoPou ? nullptr : &sema_.declared.pous[callee.pou];
   Enable enable;
   for (uint32_t i = 0; i < call.list.count; ++i) {

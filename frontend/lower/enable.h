@@ -1,11 +1,13 @@
 // EN and ENO of one call.
 #pragma once
 
-#include "frontend/lower/body.h"
+#include <optional>
+
+#include "frontend/lower/target.h"
 
 namespace frontend {
 
-struct Body::Enable {
+struct Enable {
   const Arg* en = nullptr;
   const Arg* eno = nullptr;
   std::optional<Target> target;  // of ENO

@@ -2,6 +2,8 @@
 // ir/program/ir.h. Where the type of the instance is known, its method is called; a
 // reference, an interface variable or THIS may lead to a derived one that has another.
 #include "frontend/lower/body.h"
+#include "frontend/lower/call.h"
+#include "frontend/lower/references.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/objects.h"
 
@@ -26,7 +28,7 @@ Receiver Body::receiver_of(const Expr& head) {
   } else if (note.reference.valid() && is_interface(types(), note.type)) {
     receiver.handle = build_.load(place(id), ir::Scalar::kU64);
   } else if (note.reference.valid() || operand.kind == ExprKind::kDeref || indexed) {
-    receiver.handle = handle_of(id);
+    receiver.handle = ask<References>().handle_of(id);
   } else {
     receiver.place = place(id);
   }

@@ -1,9 +1,10 @@
 // Binary operators.
+#include "frontend/lower/references.h"
+#include "frontend/lower/value_code.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/width.h"
-
-#include "frontend/lower/body.h"
 
 namespace frontend {
 namespace {
@@ -40,7 +41,7 @@ ir::ValueId ValueCode::number_op(BinaryOp op, ir::TypeId type, ir::ValueId a, ir
   return build_.binary(machine_op(op), scalar(type), a, b);
 }
 
-ir::ValueId Body::emit_binary(const Expr& expr, ir::TypeId own) {
+ir::ValueId Values::emit_binary(const Expr& expr, ir::TypeId own) {
   switch (operator_class(expr.binary)) {
     case OperatorClass::kComparison: {
       ir::ValueId result = emit_comparison(expr.binary, expr.operand, expr.right);
@@ -60,7 +61,7 @@ ir::ValueId Body::emit_binary(const Expr& expr, ir::TypeId own) {
   return code_.number_op(expr.binary, own, left, right);
 }
 
-ir::ValueId Body::emit_lazy(const Expr& expr) {
+ir::ValueId Values::emit_lazy(const Expr& expr) {
   ir::TypeId boolean = elementary(ir::Kind::kBool);
   bool conjunction = expr.binary == BinaryOp::kAndThen;
   ir::ValueId left = value(expr.operand, boolean);
@@ -80,7 +81,7 @@ ir::ValueId Body::emit_lazy(const Expr& expr) {
   return result;
 }
 
-ir::ValueId Body::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
+ir::ValueId Values::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   Note common = ask<OperatorTypes>().unify(infer(left), infer(right), tree_[left].span);
   if (!common.type.valid()) return code_.zero(elementary(ir::Kind::kBool));
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
@@ -123,7 +124,7 @@ ir::ValueId ValueCode::compare_scalars(BinaryOp op, ir::TypeId type, ir::ValueId
   }
 }
 
-ir::ValueId Body::compare_strings(BinaryOp op, ExprId left, ExprId right) {
+ir::ValueId Values::compare_strings(BinaryOp op, ExprId left, ExprId right) {
   ir::Place a = place(left);
   return code_.compare_places(op, a, place(right));
 }
@@ -136,11 +137,11 @@ ir::ValueId ValueCode::compare_places(BinaryOp op, const ir::Place& a, const ir:
   return compare_scalars(op, elementary(ir::Kind::kDint), order, none);
 }
 
-ir::ValueId Body::emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
+ir::ValueId Values::emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
   const Note& a = infer(left);
   const Note& b = infer(right);
   if (types().is_reference(a.type) || types().is_reference(b.type)) {
-    return emit_pointer_arithmetic(op, left, right, own);
+    return ask<References>().emit_pointer_arithmetic(op, left, right, own);
   }
   if (op == BinaryOp::kPower) {
     Typed base = natural(left);

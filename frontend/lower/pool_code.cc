@@ -1,5 +1,5 @@
 #include "frontend/lower/pool_code.h"
-#include "frontend/lower/body.h"
+#include "frontend/lower/write_checks.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/pools.h"
@@ -112,7 +112,7 @@ ir::ValueId PoolCode::make(const Expr& call) {
 void PoolCode::destroy(const Expr& call) {
   const ExprId argument = sema_.tree.args[call.list.first].value;
   const Note& note = infer(argument);
-  if (!note.type.valid() || !ask<Body>().check_writable(argument)) return;
+  if (!note.type.valid() || !ask<WriteChecks>().check_writable(argument)) return;
   const ir::Place pointer = place(argument);
   set_line(call.span);
   const ir::ValueId object = build_.load(pointer, kU64);

@@ -1,6 +1,9 @@
 // Pointers and references in bodies, by the shapes of "References" in ir/program/ir.h.
 #include "frontend/lower/body.h"
+#include "frontend/lower/places.h"
 #include "frontend/lower/pool_code.h"
+#include "frontend/lower/references.h"
+#include "frontend/lower/value_code.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/operator_types.h"
@@ -22,7 +25,7 @@ ir::Place ValueCode::target_place(ir::ValueId handle, ir::TypeId type) const {
 }
 
 // p^, and p[i].
-ir::Place Body::dereferenced_place(const Expr& expr) {
+ir::Place References::dereferenced_place(const Expr& expr) {
   const Typed pointer = natural(expr.operand);
   const ir::TypeId target = types()[pointer.type].base;
   set_line(expr.span);
@@ -41,7 +44,7 @@ ir::ValueId ValueCode::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId e
 }
 
 // The place itself, also of what is constant: references need a home.
-ir::Place Body::addressable_place(ExprId id) {
+ir::Place References::addressable_place(ExprId id) {
   const Expr& expr = tree_[id];
   ExprId whole = id;
   while (tree_[whole].kind == ExprKind::kMember || tree_[whole].kind == ExprKind::kIndex) {
@@ -50,7 +53,7 @@ ir::Place Body::addressable_place(ExprId id) {
   }
   if (VarId variable = infer(whole).variable; variable.valid()) {
     sema_.mark_written(variable);  // who has the address can
-    note_outer_use(variable, true, expr.span);
+    ask<Places>().note_outer_use(variable, true, expr.span);
   }
   const Note& note = infer(id);
   const bool part = note.bit_size != 0;
@@ -69,28 +72,28 @@ ir::Place Body::addressable_place(ExprId id) {
 }
 
 // The handle that leads to what `id` names.
-ir::ValueId Body::handle_of(ExprId id) {
+ir::ValueId References::handle_of(ExprId id) {
   const Expr& expr = tree_[id];
   const Note& note = infer(id);
   if (!note.type.valid()) return code_.zero({});
   if (note.reference.valid()) return raw_reference(id);
   if (expr.kind == ExprKind::kDeref) return natural(expr.operand).value;
-  if (is_character(id)) {
+  if (ask<Places>().is_character(id)) {
     const ir::ValueId string = handle_of(expr.operand);
-    return code_.moved(string, character_position(expr), note.type);
+    return code_.moved(string, ask<Places>().character_position(expr), note.type);
   }
   return build_.handle(addressable_place(id));
 }
 
 // The value of a REFERENCE TO itself, which otherwise stands for its target.
-ir::ValueId Body::raw_reference(ExprId id) {
+ir::ValueId References::raw_reference(ExprId id) {
   const Expr& expr = tree_[id];
-  if (expr.kind == ExprKind::kCall) return emit_call(expr, infer(id).reference);
-  return build_.load(raw_place(id), ir::Scalar::kU64);
+  if (expr.kind == ExprKind::kCall) return ask<Body>().emit_call(expr, infer(id).reference);
+  return build_.load(ask<Places>().raw_place(id), ir::Scalar::kU64);
 }
 
 // What binds a REFERENCE TO: a variable, another reference, a pointer's value, or NULL.
-ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
+ir::ValueId References::reference_value(ExprId id, ir::TypeId target) {
   const Note& note = infer(id);
   const ir::Type& reference = types()[target];
   if (!note.type.valid()) return code_.zero(target);
@@ -110,7 +113,7 @@ ir::ValueId Body::reference_value(ExprId id, ir::TypeId target) {
 }
 
 // An instance where a variable of an interface is wanted.
-ir::ValueId Body::interface_value(ExprId id, ir::TypeId target) {
+ir::ValueId References::interface_value(ExprId id, ir::TypeId target) {
   const ir::TypeId type = infer(id).type;
   if (types().is_a(type, types()[target].base)) return handle_of(id);
   error(DiagnosticCode::kTypeMismatch, tree_[id].span,
@@ -121,7 +124,7 @@ ir::ValueId Body::interface_value(ExprId id, ir::TypeId target) {
 }
 
 // r REF= x
-void Body::bind_reference(const Stmt& stmt) {
+void References::bind_reference(const Stmt& stmt) {
   const Note& note = infer(stmt.target);
   if (!note.type.valid()) return;
   if (!note.reference.valid()) {
@@ -129,13 +132,13 @@ void Body::bind_reference(const Stmt& stmt) {
           "`" + sema_.report.type_text(note.type) + "` is not a REFERENCE TO", "assign with `:=`");
     return;
   }
-  const ir::Place where = raw_place(stmt.target);
+  const ir::Place where = ask<Places>().raw_place(stmt.target);
   const ir::ValueId handle = reference_value(stmt.value, note.reference);
   set_line(stmt.span);
   build_.store(where, ir::Scalar::kU64, handle);
 }
 
-ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own) {
+ir::ValueId References::emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own) {
   const ExprId argument = tree_.args[expr.list.first].value;
   switch (call) {
     case ReferenceCall::kNew:
@@ -160,7 +163,8 @@ ir::ValueId Body::emit_reference_call(const Expr& expr, ReferenceCall call, ir::
   }
 }
 
-ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own) {
+ir::ValueId References::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right,
+                                                ir::TypeId own) {
   const ir::TypeId dword = elementary(ir::Kind::kDword);
   const bool first = types().is_reference(infer(left).type);
   const bool second = types().is_reference(infer(right).type);
@@ -180,7 +184,7 @@ ir::ValueId Body::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right
 
 // A chain of sums moves its pointer once, by all that is added: ADR(a) + 4 * i - 4 may leave the
 // variable on its way.
-MovedPointer Body::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
+MovedPointer References::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
   const bool first = types().is_reference(infer(left).type);
   MovedPointer sum;
   Typed number;
@@ -198,7 +202,7 @@ MovedPointer Body::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
   return sum;
 }
 
-MovedPointer Body::pointer_of_sum(ExprId id) {
+MovedPointer References::pointer_of_sum(ExprId id) {
   const Expr& expr = tree_[id];
   const bool sum = expr.kind == ExprKind::kBinary &&
                    (expr.binary == BinaryOp::kAdd || expr.binary == BinaryOp::kSub);
@@ -208,7 +212,7 @@ MovedPointer Body::pointer_of_sum(ExprId id) {
 
 // Pointers to integers and back (ADR 0005): 64 bits hold the handle's place, 32 bits the flat
 // address.
-ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan span) {
+ir::ValueId References::convert_reference(Typed from, ir::TypeId to, base::SourceSpan span) {
   const bool reference_source = types().is_reference(from.type);
   const bool reference_target = types().is_reference(to);
   const bool codesys = sema_.options.dialect != Dialect::kIec;
@@ -249,7 +253,7 @@ ir::ValueId Body::convert_reference(Typed from, ir::TypeId to, base::SourceSpan 
 }
 
 // A constant where a pointer is wanted: NULL, 0, or an address.
-ir::ValueId Body::constant_reference(ExprId id) {
+ir::ValueId References::constant_reference(ExprId id) {
   if (infer(id).flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
   const auto bits = ask<Constants>().fold_bits(id, elementary(ir::Kind::kLword));
   if (!bits || *bits == 0) return build_.constant(ir::Scalar::kU64, 0);

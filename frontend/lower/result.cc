@@ -1,12 +1,13 @@
 // The current result of an instruction list. Within straight code it is a value, at a label a
 // local that every way there assigns.
 #include "frontend/lower/body.h"
+#include "frontend/lower/current_results.h"
 #include "frontend/sema/expressions.h"
 
 namespace frontend {
 
 // In the order of the source each result depends on what is known already only.
-void Body::infer_results(Range32 list) {
+void CurrentResults::infer_results(Range32 list) {
   for (uint32_t i = 0; i < list.count; ++i) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
     if (!stmt.instruction) continue;
@@ -16,19 +17,19 @@ void Body::infer_results(Range32 list) {
   }
 }
 
-void Body::keep_result(const Stmt& stmt) {
+void CurrentResults::keep_result(const Stmt& stmt) {
   if (!ask<Expressions>().check_result(stmt)) return;
   ir::TypeId type = infer(stmt.target).type;
   uint32_t number = tree_[stmt.target].number;
   bool single = !tree_.results[number].at_label && type.valid() && types().is_scalar(type);
   if (!single) {
-    assign_value(stmt.target, stmt.value, stmt.span);
+    ask<Body>().assign_value(stmt.target, stmt.value, stmt.span);
   } else {
     body_.result_values.emplace(number, value(stmt.value, type));
   }
 }
 
-ir::ValueId Body::emit_result(ExprId id) {
+ir::ValueId CurrentResults::emit_result(ExprId id) {
   auto found = body_.result_values.find(tree_[id].number);
   if (found != body_.result_values.end()) return found->second;
   ir::Place from = place(id);
@@ -36,7 +37,7 @@ ir::ValueId Body::emit_result(ExprId id) {
 }
 
 // The result is in the same local wherever it is used.
-ir::Place Body::result_place(const Expr& expr, ir::TypeId type) {
+ir::Place CurrentResults::result_place(const Expr& expr, ir::TypeId type) {
   auto found = body_.result_places.find(expr.number);
   if (found != body_.result_places.end()) return found->second;
   ir::Place local = temporary_place(type);

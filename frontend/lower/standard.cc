@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "frontend/lower/body.h"
+#include "frontend/lower/value_code.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/standard_calls.h"
@@ -134,10 +136,12 @@ ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir
                       const Note& note = infer(arg);
                       return is_small(sema_, note) || note.flex == Flex::kInteger;
                     });
-  const auto operand = [&](ExprId arg) { return wide ? computed_in(arg, own) : value(arg, own); };
+  const auto operand = [&](ExprId arg) {
+    return wide ? ask<Values>().computed_in(arg, own) : value(arg, own);
+  };
   if (args.size() == 2 && !wide && op != BinaryOp::kAnd && op != BinaryOp::kOr &&
       op != BinaryOp::kXor) {
-    return emit_arithmetic(op, args[0], args[1], own);
+    return ask<Values>().emit_arithmetic(op, args[0], args[1], own);
   }
   Traits traits = traits_of(types(), own);
   if (traits.duration || traits.date) {

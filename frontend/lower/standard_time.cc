@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "frontend/lower/body.h"
+#include "frontend/lower/value_code.h"
 #include "frontend/sema/standard_calls.h"
 
 namespace frontend {

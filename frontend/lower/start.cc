@@ -1,9 +1,9 @@
+#include "frontend/lower/body.h"
+#include "frontend/lower/call.h"
+#include "frontend/lower/pool_code.h"
 #include "frontend/lower/start_code.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/objects.h"
-
-#include "frontend/lower/body.h"
-#include "frontend/lower/pool_code.h"
 #include "ir/types/stamps.h"
 
 namespace frontend {

@@ -1,11 +1,13 @@
 // Statements without a file of their own.
 #include "frontend/lower/body.h"
+#include "frontend/lower/current_results.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 
 namespace frontend {
 
 void Body::statements(Range32 list) {
-  if (body_.flow.labels.empty()) infer_results(list);
+  if (body_.flow.labels.empty()) ask<CurrentResults>().infer_results(list);
   body_.flow.labels.push_back({labels_of(list), body_.flow.tries.size()});
   bool warned = false;
   bool was_reachable = build_.reachable();
@@ -61,7 +63,7 @@ void Body::statement(const Stmt& stmt) {
   }
 }
 
-ir::ValueId Body::condition(ExprId expr) {
+ir::ValueId Values::condition(ExprId expr) {
   const Note& note = infer(expr);
   if (note.type.valid() && !traits_of(types(), note.type).boolean) {
     error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
@@ -85,7 +87,7 @@ void Body::if_statement(const Stmt& stmt) {
       warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
               "this condition is always the same");
     }
-    body_.counting.decide(condition(branch.condition), then, otherwise, at,
+    body_.counting.decide(ask<Values>().condition(branch.condition), then, otherwise, at,
                           i == 0 ? "IF" : "ELSIF");
     build_.start(then);
     statements(branch.body);
@@ -130,7 +132,8 @@ void Body::while_statement(const Stmt& stmt) {
   ir::BlockId exit = build_.new_block();
   build_.jump(head);
   build_.start(head);
-  body_.counting.decide(condition(stmt.value), body, exit, tree_[stmt.value].span.begin, "WHILE");
+  body_.counting.decide(ask<Values>().condition(stmt.value), body, exit,
+                        tree_[stmt.value].span.begin, "WHILE");
   build_.start(body);
   if (!loop_body(stmt.body, head, exit)) check_end(stmt.value, true);
   build_.start(exit);
@@ -144,7 +147,8 @@ void Body::repeat_statement(const Stmt& stmt) {
   build_.start(body);
   if (!loop_body(stmt.body, test, exit)) check_end(stmt.value, false);
   build_.start(test);
-  body_.counting.decide(condition(stmt.value), exit, body, tree_[stmt.value].span.begin, "UNTIL");
+  body_.counting.decide(ask<Values>().condition(stmt.value), exit, body,
+                        tree_[stmt.value].span.begin, "UNTIL");
   build_.start(exit);
 }
 

@@ -2,7 +2,8 @@
 // as STRING; a WSTRING is made of it, or narrowed before it is read.
 #include <limits>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/conversions.h"
+#include "frontend/lower/value_code.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/operators.h"
 #include "frontend/sema/standard_calls.h"
@@ -70,14 +71,14 @@ bool is_character_kind(ir::Kind kind) { return ir::elementary_group(kind) == ir:
 }  // namespace
 
 // A WSTRING as STRING; strings as they are.
-ir::Place Body::narrow_string(ir::Place source, bool is_wide) {
+ir::Place Conversions::narrow_string(ir::Place source, bool is_wide) {
   if (!is_wide) return source;
   ir::Place out = temporary_place(sema_.program.types.string(types()[source.type].capacity));
   code_.native(NativeId::kWstringToString, {code_.string_value(out), code_.string_value(source)});
   return out;
 }
 
-ir::Place Body::to_string(const Expr& call, const Conversion& conversion, ir::TypeId type) {
+ir::Place Conversions::to_string(const Expr& call, const Conversion& conversion, ir::TypeId type) {
   ExprId argument = ask<Calls>().conversion_argument(call);
   const Note& note = infer(argument);
   bool named = !conversion.any_source && ir::is_elementary(conversion.from);
@@ -98,7 +99,7 @@ ir::Place Body::to_string(const Expr& call, const Conversion& conversion, ir::Ty
   return out;
 }
 
-ir::Place Body::string_to_string(ExprId source, ir::TypeId type) {
+ir::Place Conversions::string_to_string(ExprId source, ir::TypeId type) {
   ir::Place text = place(source);
   if (wide(text.type) == wide(type)) return text;
   if (!wide(type)) return narrow_string(text, true);
@@ -107,7 +108,7 @@ ir::Place Body::string_to_string(ExprId source, ir::TypeId type) {
   return out;
 }
 
-void Body::write_text(const ir::Place& text, Typed source) {
+void Conversions::write_text(const ir::Place& text, Typed source) {
   if (is_enum(types(), source.type) && ask<StandardCalls>().prints_names(source.type)) {
     return write_enumerator_name(text, source);
   }
@@ -123,7 +124,7 @@ void Body::write_text(const ir::Place& text, Typed source) {
 }
 
 // The number first; a literal of that value replaces it.
-void Body::write_enumerator_name(const ir::Place& text, Typed source) {
+void Conversions::write_enumerator_name(const ir::Place& text, Typed source) {
   ir::Scalar machine = scalar(source.type);
   ir::TypeId type = without_range(types(), source.type);
   ir::ValueId number = code_.machine_convert(source.value, machine, ir::Scalar::kI64);
@@ -147,7 +148,7 @@ void Body::write_enumerator_name(const ir::Place& text, Typed source) {
 }
 
 // What is too large for the target becomes its nearest value.
-ir::ValueId Body::from_string(ExprId source, ir::TypeId to) {
+ir::ValueId Conversions::from_string(ExprId source, ir::TypeId to) {
   ir::Place text = place(source);
   ir::Kind kind = types().root_kind(to);
   if (is_character_kind(kind)) return character_of(text, to);
@@ -161,7 +162,7 @@ ir::ValueId Body::from_string(ExprId source, ir::TypeId to) {
   return code_.clamp(result, form.machine, scalar(to));
 }
 
-ir::ValueId Body::character_of(const ir::Place& text, ir::TypeId to) {
+ir::ValueId Conversions::character_of(const ir::Place& text, ir::TypeId to) {
   if (!wide(text.type) || types().root_kind(to) == ir::Kind::kChar) {
     ir::Place narrow = narrow_string(text, wide(text.type));
     ir::ValueId code = code_.native(NativeId::kStringToChar, {code_.string_value(narrow)});

@@ -1,6 +1,8 @@
 // Assertions and the other calls of tests. A failed assertion leaves its message in a global
 // and traps, which ends the test; stc test shows both.
 #include "frontend/lower/body.h"
+#include "frontend/lower/conversions.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/operator_types.h"
 #include "frontend/sema/operators.h"
@@ -62,7 +64,7 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
     case TestCall::kAssertTrue:
     case TestCall::kAssertFalse: {
       const bool wanted = row.call != TestCall::kAssertFalse;
-      ir::ValueId given = condition(args[0]);
+      ir::ValueId given = ask<Values>().condition(args[0]);
       if (!wanted) given = build_.unary(ir::Op::kNot, ir::Scalar::kBool, given);
       fail_unless(given, message, [&] {
         return constant_text(wanted ? "expected TRUE, got FALSE" : "expected FALSE, got TRUE");
@@ -128,8 +130,8 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
   if (is_string(types(), common.type)) {
     const ir::Place a = place(args[0]);
     const ir::Place b = place(args[1]);
-    actual = [this, a] { return narrow_string(a, wide(a.type)); };
-    expected = [this, b] { return narrow_string(b, wide(b.type)); };
+    actual = [this, a] { return ask<Conversions>().narrow_string(a, wide(a.type)); };
+    expected = [this, b] { return ask<Conversions>().narrow_string(b, wide(b.type)); };
     holds = code_.compare_places(relation.op, a, b);
   } else if (!types().is_scalar(common.type)) {
     error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
@@ -192,7 +194,8 @@ void Body::fail_unless(ir::ValueId holds, ExprId message, const std::function<ir
     if (message.valid()) {
       const ir::Place words = place(message);
       if (is_string(types(), words.type)) {
-        text = joined(narrow_string(words, wide(words.type)), joined(constant_text(": "), text));
+        text = joined(ask<Conversions>().narrow_string(words, wide(words.type)),
+                      joined(constant_text(": "), text));
       }
     }
     build_.copy(global_place(sema_.tests.message), text);
@@ -213,7 +216,7 @@ ir::Place Body::constant_text(std::string text) {
 // Longer than any number, time, date or name of an enumerator that fits a message.
 ir::Place Body::text_of(Typed value) {
   ir::Place text = temporary_place(sema_.program.types.string(kValueText));
-  write_text(text, value);
+  ask<Conversions>().write_text(text, value);
   return text;
 }
 

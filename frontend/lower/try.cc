@@ -3,6 +3,7 @@
 // go on in a variable of the frame, and what is after the __FINALLY looks there.
 #include "base/limits.h"
 #include "frontend/lower/body.h"
+#include "frontend/lower/write_checks.h"
 
 namespace frontend {
 
@@ -124,7 +125,8 @@ void Body::catch_variable(const Stmt& stmt) {
   constexpr ir::Scalar kU32 = ir::Scalar::kU32;
   ir::ValueId kind = build_.trap_kind();
   kind = build_.binary(ir::Op::kAdd, kU32, kind, build_.constant(kU32, 1));
-  auto variable = check_writable(stmt.target) ? target(stmt.target) : std::nullopt;
+  auto variable =
+      ask<WriteChecks>().check_writable(stmt.target) ? target(stmt.target) : std::nullopt;
   if (!variable) return;
   Traits traits = traits_of(types(), variable->type);
   bool wide_enough = types().is_scalar(variable->type) && !traits.boolean &&

@@ -1,11 +1,12 @@
 // Assignments and questions that depend on what an instance is: `i ?= x`,
 // __QUERYINTERFACE(x, i), __QUERYPOINTER(x, p). What does not fit leaves NULL.
-#include "frontend/lower/body.h"
+#include "frontend/lower/places.h"
+#include "frontend/lower/references.h"
 
 namespace frontend {
 
 // The reference to an instance that `id` is or holds; reports what is neither.
-std::optional<ir::ValueId> Body::object_handle(ExprId id) {
+std::optional<ir::ValueId> References::object_handle(ExprId id) {
   const Note& note = infer(id);
   if (!note.type.valid()) return std::nullopt;
   if (note.constant && note.flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
@@ -22,7 +23,7 @@ std::optional<ir::ValueId> Body::object_handle(ExprId id) {
 }
 
 // Binds the variable `left` to the instance when its type allows; whether it does.
-Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
+Attempt References::attempt(ExprId left, ExprId right, base::SourceSpan span) {
   Attempt result{code_.zero(elementary(ir::Kind::kBool)), build_.constant(ir::Scalar::kU64, 0)};
   const Note note = infer(left);
   if (!note.type.valid()) {
@@ -44,7 +45,7 @@ Attempt Body::attempt(ExprId left, ExprId right, base::SourceSpan span) {
   std::optional<Target> to;
   if (bound) {
     to.emplace();
-    to->place = raw_place(left);
+    to->place = ask<Places>().raw_place(left);
     to->type = to->place.type;
   } else {
     to = target(left);

@@ -1,5 +1,10 @@
 // Scalar values of expressions, in the type that their place asks for.
 #include "frontend/lower/body.h"
+#include "frontend/lower/current_results.h"
+#include "frontend/lower/places.h"
+#include "frontend/lower/references.h"
+#include "frontend/lower/value_code.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/operand_warnings.h"
 #include "frontend/sema/variables.h"
@@ -36,7 +41,7 @@ bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
 
 }  // namespace
 
-ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
+ir::TypeId Values::own_type(const Note& note, ir::TypeId target) const {
   if (!target.valid()) return note.type;
   Traits traits = traits_of(types(), target);
   ir::TypeId plain = without_range(types(), target);
@@ -60,7 +65,7 @@ ir::TypeId Body::own_type(const Note& note, ir::TypeId target) const {
 
 // pt - start, where `start` is a number that holds an address: a distance, though the type is a
 // pointer's, and so is what a constant moves it by.
-bool Body::is_distance(ExprId id) {
+bool References::is_distance(ExprId id) {
   const Expr& expr = tree_[id];
   if (expr.kind != ExprKind::kBinary) return false;
   if (expr.binary != BinaryOp::kAdd && expr.binary != BinaryOp::kSub) return false;
@@ -69,14 +74,16 @@ bool Body::is_distance(ExprId id) {
   return is_distance(expr.operand);
 }
 
-ir::ValueId Body::value(ExprId id, ir::TypeId target) {
+ir::ValueId Values::value(ExprId id, ir::TypeId target) {
   const Note& note = infer(id);
   const Expr& expr = tree_[id];
   if (!note.type.valid() || !target.valid()) return code_.zero(target);
-  if (types()[target].kind == ir::Kind::kReferenceTo) return reference_value(id, target);
-  if (note.constant && types().is_reference(target)) return constant_reference(id);
+  if (types()[target].kind == ir::Kind::kReferenceTo)
+    return ask<References>().reference_value(id, target);
+  if (note.constant && types().is_reference(target))
+    return ask<References>().constant_reference(id);
   if (is_interface(types(), target) && types().is_instance(note.type)) {
-    return interface_value(id, target);
+    return ask<References>().interface_value(id, target);
   }
   if (is_known(note)) {
     auto bits = ask<Constants>().fold_bits(id, target,
@@ -95,15 +102,17 @@ ir::ValueId Body::value(ExprId id, ir::TypeId target) {
   if (note.width == Width::kWide && !types().is_reference(target)) return stored(id, target);
   if (note.width == Width::kWraps && is_wider(types(), target, own))
     check_wrapped(*this, id, "widened");
-  if (types().is_reference(own) && !types().is_reference(target) && is_distance(id)) {
+  if (types().is_reference(own) && !types().is_reference(target) &&
+      ask<References>().is_distance(id)) {
     ir::TypeId number = elementary(ir::Kind::kDword);
-    return convert({convert_reference({emit(id, own), own}, number, expr.span), number}, target,
-                   expr.span);
+    return convert(
+        {ask<References>().convert_reference({emit(id, own), own}, number, expr.span), number},
+        target, expr.span);
   }
   return convert({emit(id, own), own}, target, expr.span);
 }
 
-Typed Body::natural(ExprId id) {
+Typed Values::natural(ExprId id) {
   const Note& note = infer(id);
   ir::TypeId type = without_range(types(), note.type);
   if (!type.valid() || !types().is_scalar(type)) {
@@ -116,13 +125,14 @@ Typed Body::natural(ExprId id) {
   return {value(id, type), type};
 }
 
-ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
+ir::ValueId Values::emit(ExprId id, ir::TypeId own) {
   const Expr& expr = tree_[id];
   set_line(expr.span);
   if (infer(id).bit_size != 0) return emit_bit(id);
-  if (is_character(id)) return emit_character(expr);
+  if (ask<Places>().is_character(id)) return emit_character(expr);
   const Note& note = infer(id);
-  if (note.property != kNoPou && !note.reference.valid()) return read_property(id).value;
+  if (note.property != kNoPou && !note.reference.valid())
+    return ask<Body>().read_property(id).value;
   switch (expr.kind) {
     case ExprKind::kThis:
       return build_.this_handle();
@@ -139,25 +149,25 @@ ir::ValueId Body::emit(ExprId id, ir::TypeId own) {
     case ExprKind::kBinary:
       return emit_binary(expr, own);
     case ExprKind::kCall:
-      return emit_call(expr, own);
+      return ask<Body>().emit_call(expr, own);
     case ExprKind::kAssign:
-      return emit_assignment(expr);
+      return ask<Body>().emit_assignment(expr);
     case ExprKind::kResult:
-      return emit_result(id);
+      return ask<CurrentResults>().emit_result(id);
     default:
       return code_.zero(own);
   }
 }
 
-ir::ValueId Body::emit_bit(ExprId id) {
+ir::ValueId Values::emit_bit(ExprId id) {
   const Note part = infer(id);
   uint32_t offset = part.bit_number * part.bit_size;
   if (part.view) {
-    ir::Place byte = view_place(id);
+    ir::Place byte = ask<Places>().view_place(id);
     return code_.part_of(build_.load(byte, scalar(byte.type)), scalar(byte.type), offset, 1);
   }
   if (part.bit_member >= 0) {
-    ir::Place word = bit_word_place(tree_[id].operand, part);
+    ir::Place word = ask<Places>().bit_word_place(tree_[id].operand, part);
     ir::ValueId bits = build_.load(word, scalar(word.type));
     return code_.part_of(bits, scalar(word.type), offset, 1);
   }
@@ -180,7 +190,7 @@ ir::ValueId ValueCode::part_of(ir::ValueId word, ir::Scalar machine, uint32_t of
   return build_.unary(ir::Op::kToBool, ir::Scalar::kBool, bits);
 }
 
-ir::ValueId Body::emit_unary(const Expr& expr, ir::TypeId own) {
+ir::ValueId Values::emit_unary(const Expr& expr, ir::TypeId own) {
   ir::ValueId operand = value(expr.operand, own);
   set_line({expr.op, expr.op});
   if (expr.unary == UnaryOp::kPlus) return operand;

@@ -3,9 +3,9 @@
 // variable, `+`, `-`, `*` and the bitwise operators give the same bits in its type, so the code is
 // that of an operation in that type.
 #include "frontend/sema/width.h"
+#include "frontend/lower/conversions.h"
+#include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
-
-#include "frontend/lower/body.h"
 #include "frontend/sema/operators.h"
 
 namespace frontend {
@@ -29,10 +29,10 @@ bool divides_in(const Phase& phase, const Expr& expr, ir::TypeId type, ir::Scala
 
 }  // namespace
 
-ir::ValueId Body::stored(ExprId sum, ir::TypeId target) {
+ir::ValueId Values::stored(ExprId sum, ir::TypeId target) {
   const Note& note = infer(sum);
   const base::SourceSpan span = tree_[sum].span;
-  if (!fits(note.type, target, span)) return code_.zero(target);
+  if (!ask<Conversions>().fits(note.type, target, span)) return code_.zero(target);
   const Traits to = traits_of(types(), target);
   const bool range = types()[target].kind == ir::Kind::kSubrange;
   const Expr& expr = tree_[sum];
@@ -55,7 +55,7 @@ ir::ValueId Body::stored(ExprId sum, ir::TypeId target) {
 }
 
 // An operand, or a tree of operators, in `type`: nobody wants other bits than the low ones of that.
-ir::ValueId Body::computed_in(ExprId id, ir::TypeId type) {
+ir::ValueId Values::computed_in(ExprId id, ir::TypeId type) {
   const Note& note = infer(id);
   const Expr& expr = tree_[id];
   const ir::Scalar machine = scalar(type);

@@ -1,7 +1,8 @@
 // What code may write, and what others may be led to.
 #include <algorithm>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/places.h"
+#include "frontend/lower/write_checks.h"
 #include "frontend/sema/common_uses.h"
 #include "frontend/sema/objects.h"
 #include "frontend/sema/variables.h"
@@ -19,11 +20,11 @@ bool is_input(const Variable& variable) {
 
 // Does it lie where others may be led to? What must not be written does not: an image says of no
 // in-out that it is only read.
-bool Body::has_address(ExprId id) {
+bool WriteChecks::has_address(ExprId id) {
   const Note& note = infer(id);
   if (note.reference.valid()) return true;
-  if (note.property != kNoPou || is_known(note) || note.bit_size != 0 || is_character(id) ||
-      ask<Variables>().holds_input(note.type)) {
+  if (note.property != kNoPou || is_known(note) || note.bit_size != 0 ||
+      ask<Places>().is_character(id) || ask<Variables>().holds_input(note.type)) {
     return false;
   }
   if (note.variable.valid()) {
@@ -54,7 +55,7 @@ bool Body::has_address(ExprId id) {
   }
 }
 
-bool Body::check_writable(ExprId id) {
+bool WriteChecks::check_writable(ExprId id) {
   const Expr& expr = tree_[id];
   if (infer(id).property != kNoPou) {
     if (infer(id).reference.valid()) return true;  // what it leads to
@@ -68,7 +69,7 @@ bool Body::check_writable(ExprId id) {
       return check_writable_name(expr);
     case ExprKind::kDirect: {
       const ir::DirectAddress address = tree_.directs[expr.number].address;
-      note_output(address, infer(id).type, expr.span);
+      ask<Places>().note_output(address, infer(id).type, expr.span);
       if (address.area != ir::DirectArea::kInput || info_.test) return true;
       error(DiagnosticCode::kAssignToInput, expr.span,
             "`" + std::string(expr.name.text) + "` is an input of the process image");
@@ -105,7 +106,7 @@ bool Body::check_writable(ExprId id) {
 }
 
 // A member of a structure that stands at %I.
-bool Body::is_input_field(const Expr& expr) {
+bool WriteChecks::is_input_field(const Expr& expr) {
   ir::TypeId structure = infer(expr.operand).type;
   int32_t member = sema_.declared.find_member(structure, expr.name.text);
   if (member < 0) return false;
@@ -113,14 +114,14 @@ bool Body::is_input_field(const Expr& expr) {
   return field.address.area == ir::DirectArea::kInput;
 }
 
-bool Body::check_writable_field(const Expr& expr) {
+bool WriteChecks::check_writable_field(const Expr& expr) {
   if (!is_input_field(expr) || info_.test) return true;
   error(DiagnosticCode::kAssignToInput, expr.span,
         "`" + std::string(expr.name.text) + "` is an input", "copy it to a variable of its own");
   return false;
 }
 
-bool Body::check_writable_name(const Expr& expr) {
+bool WriteChecks::check_writable_name(const Expr& expr) {
   VarId id = ask<Variables>().find_variable(expr);
   if (id.valid()) return check_writable_variable(expr, id);
   error(DiagnosticCode::kNotAssignable, expr.span,
@@ -128,7 +129,7 @@ bool Body::check_writable_name(const Expr& expr) {
   return false;
 }
 
-bool Body::check_writable_variable(const Expr& expr, VarId id) {
+bool WriteChecks::check_writable_variable(const Expr& expr, VarId id) {
   const auto name = [&expr] { return "`" + std::string(expr.name.text) + "`"; };
   const Variable* variable = &resolve(id);
   bool constant = variable->constant;
@@ -154,9 +155,9 @@ bool Body::check_writable_variable(const Expr& expr, VarId id) {
     return false;
   }
   sema_.mark_written(id);
-  note_outer_use(id, true, expr.span);
+  ask<Places>().note_outer_use(id, true, expr.span);
   if (variable->decl != nullptr && variable->decl->has_address) {
-    note_output(variable->decl->address, variable->type, expr.span);
+    ask<Places>().note_output(variable->decl->address, variable->type, expr.span);
   }
   if (std::find(body_.flow.for_variables.begin(), body_.flow.for_variables.end(), id) !=
       body_.flow.for_variables.end()) {
