@@ -1,6 +1,5 @@
 // Arguments of POUs: which goes to which parameter.
-#include "frontend/lower/body.h"
-#include "frontend/lower/call.h"
+#include "frontend/lower/arguments.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/objects.h"
 
@@ -9,7 +8,8 @@ namespace frontend {
 std::string quoted_name(const Name& name) { return "`" + std::string(name.text) + "`"; }
 
 // Arguments without names come first and go to parameters in order; names may follow.
-bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings) {
+bool Arguments::bind_arguments(const Expr& call, const PouInfo& callee,
+                               std::vector<Binding>& bindings) {
   uint32_t positional = 0;
   while (positional < call.list.count && tree_.args[call.list.first + positional].name.empty()) {
     ++positional;
@@ -28,7 +28,7 @@ bool Body::bind_arguments(const Expr& call, const PouInfo& callee, std::vector<B
   return good;
 }
 
-bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
+bool Arguments::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings) {
   if (ask<Calls>().is_enable(arg, &callee)) return true;
   const VarId found = ask<Objects>().find_parameter(callee, arg.name.text);
   const bool known = found.valid() && found != callee.result;
@@ -67,8 +67,8 @@ bool Body::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding
 }
 
 // Inputs and in-outs in the order of their declaration, then outputs.
-bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
-                           std::vector<Binding>& bindings) {
+bool Arguments::bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
+                                std::vector<Binding>& bindings) {
   std::vector<VarId> parameters;
   for (bool outputs : {false, true}) {
     for (VarId id : ask<Objects>().variables_of(callee)) {
@@ -92,8 +92,8 @@ bool Body::bind_positional(const Expr& call, uint32_t count, const PouInfo& call
 }
 
 // A call without names gives every input that has no initial value of its own.
-bool Body::check_given(const Expr& call, const PouInfo& callee,
-                       const std::vector<Binding>& bindings) {
+bool Arguments::check_given(const Expr& call, const PouInfo& callee,
+                            const std::vector<Binding>& bindings) {
   if (call.list.count == 0 || !tree_.args[call.list.first].name.empty()) return true;
   std::string missing;
   for (VarId id : ask<Objects>().variables_of(callee)) {
@@ -113,8 +113,8 @@ bool Body::check_given(const Expr& call, const PouInfo& callee,
 }
 
 // In-outs have to be connected at every call: their slot keeps no meaning between calls.
-bool Body::check_in_outs(const Expr& call, const PouInfo& callee,
-                         const std::vector<Binding>& bindings) {
+bool Arguments::check_in_outs(const Expr& call, const PouInfo& callee,
+                              const std::vector<Binding>& bindings) {
   bool good = true;
   for (VarId id : ask<Objects>().variables_of(callee)) {
     const Variable& variable = resolve(id);

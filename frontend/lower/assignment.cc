@@ -1,7 +1,9 @@
 // Assignments, also as expressions: `a := b := 3`, `x S= y`. The indices of the left side
 // are evaluated first, then the value.
 #include "frontend/lower/body.h"
+#include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
+#include "frontend/lower/method_code.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/targets.h"
 #include "frontend/sema/constants.h"
@@ -21,7 +23,7 @@ void Body::assign(const Stmt& stmt) {
                stmt.from.valid() && type.valid() && types().is_instance(type)) {
       Stmt call = stmt;
       call.value = stmt.from;
-      return call_statement(call);
+      return ask<CallCode>().call_statement(call);
     }
     set_or_reset(stmt.assign, stmt.target, stmt.value, stmt.span);
   } else if (stmt.assign == AssignOp::kAssign) {
@@ -41,7 +43,7 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
   }
   if (!types().is_scalar(to->type)) {
     assign_aggregate(*to, right);
-    settle(*to);
+    ask<MethodCode>().settle(*to);
     return to;
   }
   ir::ValueId from = value(right, to->type);

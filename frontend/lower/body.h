@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "frontend/lower/body_phase.h"
-#include "frontend/lower/call.h"
-#include "frontend/lower/enable.h"
 #include "frontend/lower/handles.h"
 #include "stdlib/native/natives.h"
 
@@ -41,7 +39,6 @@ class Body : public BodyPhase {
   ir::ValueId emit_assignment(const Expr& expr);
   ir::Place assignment_place(ExprId id, const Expr& expr);
   void assign_aggregate(const Target& target, ExprId value);
-  void call_statement(const Stmt& stmt);
   bool loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
   void leave_loops();
   void check_end(ExprId condition, bool goes_on);
@@ -81,55 +78,6 @@ class Body : public BodyPhase {
   void case_tree(const CaseTests& tests, size_t first, size_t last);
   void case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next);
   void case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next);
-
-  // --- EN and ENO (enable.cc)
-  std::optional<Enable> enable_of(const Expr& call, const Callee& callee);
-  void open_enable(Enable& enable);
-  // `type` is that of the result, invalid when there is none; `otherwise` its value without a call.
-  void close_enable(Enable& enable, ir::ValueList result, ir::TypeId type, uint64_t otherwise = 0);
-  void store_eno(const Enable& enable, bool good);
-  uint64_t default_bits(ir::TypeId type) const;
-
-  // --- calls (call*.cc, arguments.cc)
-  bool bind_arguments(const Expr& call, const PouInfo& callee, std::vector<Binding>& bindings);
-  bool bind_named(const Arg& arg, const PouInfo& callee, std::vector<Binding>& bindings);
-  bool bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
-                       std::vector<Binding>& bindings);
-  bool check_in_outs(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
-  bool check_given(const Expr& call, const PouInfo& callee, const std::vector<Binding>& bindings);
-  void evaluate_input(Binding& binding, bool keep);
-  bool evaluate_in_out(Binding& binding);
-  bool evaluate_read_only(Binding& binding);
-  bool may_call(ExprId expr);
-  void evaluate_arguments(const Expr& call, std::vector<Binding>& bindings);
-  void pass_input(const Binding& binding, const ir::Place& parameter);
-  void take_outputs(std::vector<Binding>& bindings,
-                    const std::function<ir::Place(const Variable&)>& place_of);
-  void call_instance(const Expr& call, uint32_t pou);
-  CallResult call_function(const Expr& call, const Callee& callee, bool wants_result);
-  CallResult result_of(const PouInfo& callee);
-  void call_base(const Expr& call, uint32_t pou);
-  ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
-  void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
-  ir::ValueId emit_call(const Expr& expr, ir::TypeId own);
-  ir::ValueId emit_call(const Expr& expr, const Callee& callee, ir::TypeId own);
-  void check_result_use(const Expr& call);
-  void call_statement(ExprId id, const Callee& callee);
-  ir::Place call_place(ExprId id, const Expr& expr);
-  ir::Place call_place(const Expr& expr, const Callee& callee, ir::TypeId type);
-
-  // --- methods, properties, type tests (method.cc, type_test.cc)
-  Receiver receiver_of(const Expr& head);
-  bool is_virtual(const PouInfo& method, const Receiver& receiver) const;
-  void prepare_receiver(const PouInfo& method, Receiver& receiver);
-  void emit_method_call(const PouInfo& method, const Receiver& receiver);
-  const MemberCode& property_code(ExprId id);
-  CallResult get_property(uint32_t getter, Receiver receiver);
-  CallResult read_property(ExprId id);
-  std::optional<Target> property_target(ExprId id);
-  void set_property(const Target& target, std::optional<ir::ValueId> value);
-  void settle(const Target& target);
-  void bare_call(ExprId id);
 
   // --- tests (test_call.cc, mock.cc)
   void test_call(const Expr& call, const TestCallRow& row);

@@ -1,6 +1,7 @@
 // Constant calls: `N : INT := MAX(A, 3)` is lowered to a function of its own, which the
 // evaluator runs. So there is one definition of what each standard function does.
 #include "frontend/lower/body.h"
+#include "frontend/lower/call_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/width.h"
 #include "ir/program/evaluate.h"
@@ -29,7 +30,7 @@ std::optional<Constant> Body::evaluate(ExprId id, ir::TypeId context) {
     error(DiagnosticCode::kNotConstant, span, "this has to be known when compiling");
     return std::nullopt;
   }
-  ir::Place from = call_place(id, tree_[id]);
+  ir::Place from = ask<CallCode>().call_place(id, tree_[id]);
   ir::Place result = temporary_place(type);
   build_.copy(result, from);
   return run_alone(result.base_index, span);

@@ -2,12 +2,13 @@
 // FALSE nothing is called, ENO is FALSE, outputs keep what they had, and a function's
 // result is the default of its type. The same when the call, or an argument of it, traps and ENO is
 // connected. Who declares parameters of these names has them.
+#include "frontend/lower/enable.h"
 #include "frontend/lower/body.h"
 #include "frontend/sema/calls.h"
 
 namespace frontend {
 
-std::optional<Enable> Body::enable_of(const Expr& call, const Callee& callee) {
+std::optional<Enable> EnableCode::enable_of(const Expr& call, const Callee& callee) {
   const PouInfo* pou = callee.pou == kNoPou ? nullptr : &sema_.declared.pous[callee.pou];
   Enable enable;
   for (uint32_t i = 0; i < call.list.count; ++i) {
@@ -26,7 +27,7 @@ std::optional<Enable> Body::enable_of(const Expr& call, const Callee& callee) {
   return enable;
 }
 
-void Body::open_enable(Enable& enable) {
+void EnableCode::open_enable(Enable& enable) {
   ir::TypeId boolean = elementary(ir::Kind::kBool);
   enable.done = build_.new_block();
   if (enable.eno != nullptr) {
@@ -45,21 +46,22 @@ void Body::open_enable(Enable& enable) {
   }
   if (enable.eno == nullptr) return;
   enable.handler = build_.new_block();
-  enter_try(enable.handler, {}, enable.eno->span);
+  ask<Body>().enter_try(enable.handler, {}, enable.eno->span);
   body_.flow.tries.back().eno = true;
 }
 
-void Body::store_eno(const Enable& enable, bool good) {
+void EnableCode::store_eno(const Enable& enable, bool good) {
   if (!enable.target) return;
   bool bit = good != enable.eno->negated;
   store(*enable.target, build_.constant(ir::Scalar::kBool, bit ? 1 : 0));
 }
 
-void Body::close_enable(Enable& enable, ir::ValueList result, ir::TypeId type, uint64_t otherwise) {
+void EnableCode::close_enable(Enable& enable, ir::ValueList result, ir::TypeId type,
+                              uint64_t otherwise) {
   if (enable.handler.valid()) {
     ir::BlockId good = build_.new_block();
     build_.end_try(good);
-    leave_try();
+    ask<Body>().leave_try();
     build_.start(good);
   }
   store_eno(enable, true);
@@ -75,54 +77,12 @@ void Body::close_enable(Enable& enable, ir::ValueList result, ir::TypeId type, u
   build_.start(enable.done);
 }
 
-uint64_t Body::default_bits(ir::TypeId type) const {
+uint64_t EnableCode::default_bits(ir::TypeId type) const {
   ir::ConstId init;
   for (ir::TypeId at = type; !init.valid() && at.valid(); at = types()[at].base) {
     init = types()[at].init;
   }
   return init.valid() ? sema_.program.constants[init].bits : 0;
-}
-
-ir::ValueId Body::emit_call(const Expr& expr, ir::TypeId own) {
-  Callee callee = ask<Calls>().callee(expr);
-  auto enable = enable_of(expr, callee);
-  if (!enable) return emit_call(expr, callee, own);
-  open_enable(*enable);
-  ir::ValueId result = build_.add_param(enable->done, scalar(own));
-  ir::ValueId value = emit_call(expr, callee, own);
-  uint64_t otherwise = default_bits(own);
-  if (callee.kind == Callee::Kind::kFunction && sema_.declared.pous[callee.pou].result.valid()) {
-    const Variable& declared = resolve(sema_.declared.pous[callee.pou].result);
-    otherwise = declared.init.valid() ? sema_.program.constants[declared.init].bits
-                                      : default_bits(declared.type);
-  }
-  close_enable(*enable, {value}, own, otherwise);
-  return result;
-}
-
-// A result that is no scalar.
-ir::Place Body::call_place(ExprId id, const Expr& expr) {
-  ir::TypeId type = infer(id).type;
-  Callee callee = ask<Calls>().callee(expr);
-  auto enable = enable_of(expr, callee);
-  if (!enable) return call_place(expr, callee, type);
-  ir::Place result = temporary_place(type);
-  build_.init(result, {});
-  open_enable(*enable);
-  build_.copy(result, call_place(expr, callee, type));
-  close_enable(*enable, {}, {});
-  return result;
-}
-
-void Body::call_statement(const Stmt& stmt) {
-  const Expr& call = tree_[stmt.value];
-  if (call.kind != ExprKind::kCall) return bare_call(stmt.value);
-  Callee callee = ask<Calls>().callee(call);
-  auto enable = enable_of(call, callee);
-  if (!enable) return call_statement(stmt.value, callee);
-  open_enable(*enable);
-  call_statement(stmt.value, callee);
-  close_enable(*enable, {}, {});
 }
 
 }  // namespace frontend

@@ -1,8 +1,9 @@
 // Calls of methods, actions and bodies of bases, and properties, by "Objects" in
 // ir/program/ir.h. Where the type of the instance is known, its method is called; a
 // reference, an interface variable or THIS may lead to a derived one that has another.
-#include "frontend/lower/body.h"
-#include "frontend/lower/call.h"
+#include "frontend/lower/arguments.h"
+#include "frontend/lower/call_code.h"
+#include "frontend/lower/method_code.h"
 #include "frontend/lower/references.h"
 #include "frontend/sema/calls.h"
 #include "frontend/sema/objects.h"
@@ -10,7 +11,7 @@
 namespace frontend {
 
 // The instance whose method `x.m` or `m` is; evaluates x.
-Receiver Body::receiver_of(const Expr& head) {
+Receiver MethodCode::receiver_of(const Expr& head) {
   Receiver receiver;
   if (head.kind != ExprKind::kMember) return receiver;
   const ExprId id = head.operand;
@@ -35,21 +36,21 @@ Receiver Body::receiver_of(const Expr& head) {
   return receiver;
 }
 
-bool Body::is_virtual(const PouInfo& method, const Receiver& receiver) const {
+bool MethodCode::is_virtual(const PouInfo& method, const Receiver& receiver) const {
   if (sema_.declared.pous[method.owner].decl->kind == PouKind::kInterface) return true;
   if (receiver.fixed || receiver.place) return false;
   return method.decl->is_abstract || !method.overrides.empty();
 }
 
 // Before arguments are passed: what a virtual call needs.
-void Body::prepare_receiver(const PouInfo& method, Receiver& receiver) {
+void MethodCode::prepare_receiver(const PouInfo& method, Receiver& receiver) {
   info_.callees.push_back(method.number);
   if (!is_virtual(method, receiver)) return;
   info_.callees.insert(info_.callees.end(), method.overrides.begin(), method.overrides.end());
   if (!receiver.handle) receiver.handle = build_.this_handle();
 }
 
-void Body::emit_method_call(const PouInfo& method, const Receiver& receiver) {
+void MethodCode::emit_method_call(const PouInfo& method, const Receiver& receiver) {
   if (is_virtual(method, receiver)) {
     build_.call_virtual(method.id, *receiver.handle);
   } else if (receiver.place) {
@@ -61,31 +62,32 @@ void Body::emit_method_call(const PouInfo& method, const Receiver& receiver) {
   }
 }
 
-const MemberCode& Body::property_code(ExprId id) {
+const MemberCode& MethodCode::property_code(ExprId id) {
   return sema_.declared.pous[infer(id).property].code.find(tree_[id].name.text)->second;
 }
 
-CallResult Body::result_of(const PouInfo& callee) {
+CallResult MethodCode::result_of(const PouInfo& callee) {
   CallResult result;
   if (!callee.result.valid()) return result;
   const Variable& variable = resolve(callee.result);
   if (variable.type.valid() && types().is_scalar(variable.type)) {
-    result.value = build_.load(argument_place(callee, variable), scalar(variable.type));
+    result.value =
+        build_.load(ask<Arguments>().argument_place(callee, variable), scalar(variable.type));
   } else if (variable.type.valid()) {
     result.place = temporary_place(variable.type);
-    build_.copy(result.place, argument_place(callee, variable));
+    build_.copy(result.place, ask<Arguments>().argument_place(callee, variable));
   }
   return result;
 }
 
-CallResult Body::get_property(uint32_t getter, Receiver receiver) {
+CallResult MethodCode::get_property(uint32_t getter, Receiver receiver) {
   const PouInfo& accessor = sema_.declared.pous[getter];
   prepare_receiver(accessor, receiver);
   emit_method_call(accessor, receiver);
   return result_of(accessor);
 }
 
-CallResult Body::read_property(ExprId id) {
+CallResult MethodCode::read_property(ExprId id) {
   const Expr& expr = tree_[id];
   const MemberCode& code = property_code(id);
   if (code.getter == kNoPou) {
@@ -99,7 +101,7 @@ CallResult Body::read_property(ExprId id) {
 }
 
 // The whole property as an assignment's left side.
-std::optional<Target> Body::property_target(ExprId id) {
+std::optional<Target> MethodCode::property_target(ExprId id) {
   const Expr& expr = tree_[id];
   const MemberCode& code = property_code(id);
   if (code.setter == kNoPou) {
@@ -122,12 +124,12 @@ std::optional<Target> Body::property_target(ExprId id) {
   return out;
 }
 
-void Body::set_property(const Target& target, std::optional<ir::ValueId> value) {
+void MethodCode::set_property(const Target& target, std::optional<ir::ValueId> value) {
   const PouInfo& accessor = sema_.declared.pous[target.setter];
   const Variable& parameter = resolve(ask<Objects>().value_of(accessor));
   Receiver receiver = target.receiver;
   prepare_receiver(accessor, receiver);
-  const ir::Place argument = argument_place(accessor, parameter);
+  const ir::Place argument = ask<Arguments>().argument_place(accessor, parameter);
   if (value) {
     build_.store(argument, scalar(parameter.type), *value);
   } else {
@@ -137,13 +139,13 @@ void Body::set_property(const Target& target, std::optional<ir::ValueId> value) 
 }
 
 // What was put together in `target.place` goes to the setter.
-void Body::settle(const Target& target) {
+void MethodCode::settle(const Target& target) {
   if (target.setter == kNoPou || types().is_scalar(target.place.type)) return;
   set_property(target, std::nullopt);
 }
 
 // `fb.act;` and `act;` call an action, or a method that needs no arguments.
-void Body::bare_call(ExprId id) {
+void MethodCode::bare_call(ExprId id) {
   const Expr& expr = tree_[id];
   if (!ask<Objects>().names_method(expr)) {
     if (expr.kind == ExprKind::kMember && ask<Objects>().damaged(expr.operand)) return;
@@ -157,7 +159,7 @@ void Body::bare_call(ExprId id) {
   call.span = expr.span;
   call.operand = id;
   const Callee callee = ask<Calls>().callee(call);
-  if (callee.kind == Callee::Kind::kMethod) call_function(call, callee, false);
+  if (callee.kind == Callee::Kind::kMethod) ask<CallCode>().call_function(call, callee, false);
 }
 
 }  // namespace frontend

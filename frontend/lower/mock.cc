@@ -1,4 +1,5 @@
 // Mocks: what tests put in the place of functions and of function block bodies.
+#include "frontend/lower/arguments.h"
 #include "frontend/lower/body.h"
 #include "frontend/sema/test_build.h"
 #include "frontend/sema/variables.h"
@@ -161,7 +162,7 @@ void Body::forward_to_mock(const PouInfo& mock) {
       results.push_back(info_.locals[i]);
     }
     if (!given || i >= mock.locals.size()) continue;
-    const ir::Place to = argument_place(mock, resolve(mock.locals[i]));
+    const ir::Place to = ask<Arguments>().argument_place(mock, resolve(mock.locals[i]));
     const ir::Place from = variable_place(info_.locals[i]);
     if (own.section == VarSection::kInOut && !own.by_reference) {
       build_.store(to, ir::Scalar::kAddr, build_.address(from));
@@ -175,7 +176,7 @@ void Body::forward_to_mock(const PouInfo& mock) {
   for (VarId id : results) {
     const Variable& own = resolve(id);
     if (own.index >= mock.locals.size()) continue;
-    const ir::Place from = argument_place(mock, resolve(mock.locals[own.index]));
+    const ir::Place from = ask<Arguments>().argument_place(mock, resolve(mock.locals[own.index]));
     if (types().is_scalar(own.type)) {
       build_.store(variable_place(id), scalar(own.type), build_.load(from, scalar(own.type)));
     } else {

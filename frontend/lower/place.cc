@@ -2,7 +2,9 @@
 #include <algorithm>
 
 #include "frontend/lower/body.h"
+#include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
+#include "frontend/lower/method_code.h"
 #include "frontend/lower/places.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/values.h"
@@ -78,7 +80,7 @@ ir::Place Places::raw_place(ExprId id) {
       if (const AddressView* view = direct_view(*this, expr)) return view_place(*view);
       return global_place(ask<Variables>().direct_member(expr));
     case ExprKind::kCall:
-      return ask<Body>().call_place(id, expr);
+      return ask<CallCode>().call_place(id, expr);
     case ExprKind::kAssign:
       return ask<Body>().assignment_place(id, expr);
     case ExprKind::kResult:
@@ -89,10 +91,10 @@ ir::Place Places::raw_place(ExprId id) {
 }
 
 ir::Place Places::property_place(ExprId id) {
-  const CallResult result = ask<Body>().read_property(id);
+  const CallResult result = ask<MethodCode>().read_property(id);
   if (!result.value.valid()) return result.place;
   const ir::Place kept = temporary_place(
-      resolve(sema_.declared.pous[ask<Body>().property_code(id).getter].result).type);
+      resolve(sema_.declared.pous[ask<MethodCode>().property_code(id).getter].result).type);
   build_.store(kept, scalar(kept.type), result.value);
   return kept;
 }

@@ -1,5 +1,5 @@
 // Pointers and references in bodies, by the shapes of "References" in ir/program/ir.h.
-#include "frontend/lower/body.h"
+#include "frontend/lower/call_code.h"
 #include "frontend/lower/places.h"
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/references.h"
@@ -88,7 +88,7 @@ ir::ValueId References::handle_of(ExprId id) {
 // The value of a REFERENCE TO itself, which otherwise stands for its target.
 ir::ValueId References::raw_reference(ExprId id) {
   const Expr& expr = tree_[id];
-  if (expr.kind == ExprKind::kCall) return ask<Body>().emit_call(expr, infer(id).reference);
+  if (expr.kind == ExprKind::kCall) return ask<CallCode>().emit_call(expr, infer(id).reference);
   return build_.load(ask<Places>().raw_place(id), ir::Scalar::kU64);
 }
 

@@ -1,5 +1,4 @@
-#include "frontend/lower/body.h"
-#include "frontend/lower/call.h"
+#include "frontend/lower/arguments.h"
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/start_code.h"
 #include "frontend/sema/constants.h"
@@ -272,25 +271,27 @@ void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
   written.list = args;
   written.span = span_;
   std::vector<Binding> bindings;
-  if (!bind(written, method, bindings) || !ask<Body>().check_in_outs(written, method, bindings))
+  if (!bind(written, method, bindings) ||
+      !ask<Arguments>().check_in_outs(written, method, bindings))
     return;
   info_.callees.push_back(method.number);
-  ask<Body>().evaluate_arguments(written, bindings);
+  ask<Arguments>().evaluate_arguments(written, bindings);
   if (!sema_.started.change_flag.valid()) return;  // there are errors
   const ir::Place flag = variable_place(sema_.started.change_flag);
   const ir::ValueId changed =
       build_.compare(ir::Op::kNe, ir::Scalar::kU32, build_.load(flag, ir::Scalar::kU32), number(0));
   for (const Binding& binding : bindings) {
-    ask<Body>().pass_input(binding, ask<Body>().argument_place(method, resolve(binding.variable)));
+    ask<Arguments>().pass_input(binding,
+                                ask<Arguments>().argument_place(method, resolve(binding.variable)));
   }
-  ask<Body>().pass_defaults(method, bindings);
+  ask<Arguments>().pass_defaults(method, bindings);
   for (VarId id : method.locals) {
     const Variable& variable = resolve(id);
     if (variable.section != VarSection::kInput || !is_implicit(variable.name)) continue;
     if (!traits_of(types(), variable.type).boolean) continue;
     // What is made has its initial values, retained variables too.
     const bool retains = ir::same_name(variable.name.text, kImplicit[0]);
-    build_.store(ask<Body>().argument_place(method, variable), kBool,
+    build_.store(ask<Arguments>().argument_place(method, variable), kBool,
                  retains ? build_.constant(kBool, 1) : changed);
   }
   build_.call_method(method.id, at);
@@ -314,7 +315,7 @@ bool StartCode::bind(const Expr& call, const PouInfo& method, std::vector<Bindin
       return false;
     }
     if (!arg.name.empty()) {
-      if (!ask<Body>().bind_named(arg, method, bindings)) return false;
+      if (!ask<Arguments>().bind_named(arg, method, bindings)) return false;
     } else if (i >= parameters.size()) {
       error(DiagnosticCode::kBadConstruction, arg.span,
             of + " takes " + std::to_string(parameters.size()) + " arguments");

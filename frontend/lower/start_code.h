@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "frontend/lower/arguments.h"
 #include "frontend/lower/body_phase.h"
-#include "frontend/lower/call.h"
 
 namespace frontend {
 

@@ -1,5 +1,6 @@
 // Statements without a file of their own.
 #include "frontend/lower/body.h"
+#include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
@@ -35,7 +36,7 @@ void Body::statement(const Stmt& stmt) {
     case StmtKind::kAssign:
       return assign(stmt);
     case StmtKind::kCall:
-      return call_statement(stmt);
+      return ask<CallCode>().call_statement(stmt);
     case StmtKind::kIf:
       return if_statement(stmt);
     case StmtKind::kCase:

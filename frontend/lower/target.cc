@@ -1,5 +1,5 @@
 // What is assigned: a place, bits of it, a character of a string, or a property.
-#include "frontend/lower/body.h"
+#include "frontend/lower/method_code.h"
 #include "frontend/lower/places.h"
 #include "frontend/lower/targets.h"
 #include "frontend/lower/write_checks.h"
@@ -25,7 +25,7 @@ std::optional<Target> Targets::target(ExprId id) {
   }
   Target out;
   if (property) {
-    auto found = ask<Body>().property_target(whole);
+    auto found = ask<MethodCode>().property_target(whole);
     if (!found) return std::nullopt;
     out = std::move(*found);
   }
@@ -70,7 +70,7 @@ ir::ValueId Targets::load_base(const Target& target) {
   if (target.character.valid()) return code_.load_character(target.place, target.character);
   if (target.setter != kNoPou) {
     if (target.getter != kNoPou)
-      return ask<Body>().get_property(target.getter, target.receiver).value;
+      return ask<MethodCode>().get_property(target.getter, target.receiver).value;
     return code_.zero(target.place.type);
   }
   return build_.load(target.place, base_scalar(target));
@@ -78,7 +78,7 @@ ir::ValueId Targets::load_base(const Target& target) {
 
 void Targets::store_base(const Target& target, ir::ValueId value) {
   if (target.character.valid()) return code_.store_character(target.place, target.character, value);
-  if (target.setter != kNoPou) return ask<Body>().set_property(target, value);
+  if (target.setter != kNoPou) return ask<MethodCode>().set_property(target, value);
   build_.store(target.place, base_scalar(target), value);
 }
 

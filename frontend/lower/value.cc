@@ -1,6 +1,8 @@
 // Scalar values of expressions, in the type that their place asks for.
 #include "frontend/lower/body.h"
+#include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
+#include "frontend/lower/method_code.h"
 #include "frontend/lower/places.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/value_code.h"
@@ -132,7 +134,7 @@ ir::ValueId Values::emit(ExprId id, ir::TypeId own) {
   if (ask<Places>().is_character(id)) return emit_character(expr);
   const Note& note = infer(id);
   if (note.property != kNoPou && !note.reference.valid())
-    return ask<Body>().read_property(id).value;
+    return ask<MethodCode>().read_property(id).value;
   switch (expr.kind) {
     case ExprKind::kThis:
       return build_.this_handle();
@@ -149,7 +151,7 @@ ir::ValueId Values::emit(ExprId id, ir::TypeId own) {
     case ExprKind::kBinary:
       return emit_binary(expr, own);
     case ExprKind::kCall:
-      return ask<Body>().emit_call(expr, own);
+      return ask<CallCode>().emit_call(expr, own);
     case ExprKind::kAssign:
       return ask<Body>().emit_assignment(expr);
     case ExprKind::kResult:
