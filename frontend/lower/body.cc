@@ -3,6 +3,7 @@
 #include "base/hash.h"
 #include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
+#include "frontend/lower/mock_code.h"
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/start_code.h"
 #include "frontend/lower/value_code.h"
@@ -20,10 +21,10 @@ void Body::run() {
   initialise_locals();
   connect_inputs();
   detect_edges();
-  mock_prologue();
+  ask<MockCode>().mock_prologue();
   const bool written = info_.made == MadeCode::kNone && !info_.test && !info_.library;
   if (written) body_.counting.begin(sema_.options.coverage, body_.out.name);
-  if (info_.test && decl.kind == PouKind::kProgram) activate_mock_bodies();
+  if (info_.test && decl.kind == PouKind::kProgram) ask<MockCode>().activate_mock_bodies();
   if (info_.setup != nullptr) statements(info_.setup->body);
   if (!info_.connections.empty()) body_.flow.exit = build_.new_block();
   if (info_.made == MadeCode::kStart) {

@@ -79,50 +79,6 @@ class Body : public BodyPhase {
   void case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next);
   void case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next);
 
-  // --- tests (test_call.cc, mock.cc)
-  void test_call(const Expr& call, const TestCallRow& row);
-  void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
-  void assert_near(const std::vector<ExprId>& args, ExprId message);
-  bool is_message(ExprId message);  // reports, as the next one does
-  bool is_time_ahead(ExprId duration);
-  void advance_time(ExprId duration);
-  void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
-  void fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what);
-  ir::Place constant_text(std::string text);
-  ir::Place text_of(Typed value);
-  ir::Place joined(const ir::Place& first, const ir::Place& second);
-  std::optional<ir::Place> mock_slot(ExprId target, uint32_t MockSlots::*slot);
-  void mock_statement(const Stmt& stmt);
-  void mock_prologue();
-  void activate_mock_bodies();
-  void forward_to_mock(const PouInfo& mock);
-
-  // --- standard functions (standard*.cc)
-  ir::ValueId emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own);
-  ir::ValueId real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                            ir::TypeId own);
-  ir::ValueId fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId own);
-  ir::ValueId shift(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                    ir::TypeId own);
-  ir::ValueId extreme(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                      ir::TypeId own);
-  ir::ValueId multiplex(const std::vector<ExprId>& args, ir::TypeId own);
-  ir::ValueId compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common);
-  ir::ValueId string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
-  ir::Place string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                            ir::TypeId type);
-  ir::Place concat(const std::vector<ExprId>& args, ir::TypeId type, bool wide);
-  ir::Place extreme_string(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                           ir::TypeId type);
-  ir::ValueId time_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
-  ir::ValueId moment(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
-  ir::ValueId day_of_week(ExprId moment);
-  void split(const Expr& call, const stdlib::FunctionRow& row);
-  ir::ValueId byte_order(ExprId argument, const stdlib::FunctionRow& row, ir::TypeId own);
-  ir::ValueId is_valid(ExprId argument, const stdlib::FunctionRow& row);
-  ir::Place choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                   ir::TypeId type);
-
   // --- helpers
   void initialise_locals();
   void detect_edges();

@@ -1,12 +1,13 @@
 // Calls of functions and function block instances, by the call discipline of
 // ir/program/ir.h: everything is evaluated first, then passed, then called.
 #include "frontend/lower/arguments.h"
-#include "frontend/lower/body.h"
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/conversions.h"
 #include "frontend/lower/enable.h"
 #include "frontend/lower/method_code.h"
 #include "frontend/lower/references.h"
+#include "frontend/lower/standard_code.h"
+#include "frontend/lower/test_code.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/standard_calls.h"
 
@@ -127,10 +128,10 @@ void CallCode::call_statement(ExprId id, const Callee& callee) {
       call_function(call, callee, false);
       return;
     case Callee::Kind::kTest:
-      return ask<Body>().test_call(call, *callee.test);
+      return ask<TestCode>().test_call(call, *callee.test);
     case Callee::Kind::kStandard:
       if (callee.row != nullptr && callee.row->rule == stdlib::FunctionRule::kSplit)
-        return ask<Body>().split(call, *callee.row);
+        return ask<StandardCode>().split(call, *callee.row);
       [[fallthrough]];
     case Callee::Kind::kConversion:
       check_result_use(call);
@@ -157,7 +158,7 @@ ir::ValueId CallCode::emit_call(const Expr& expr, const Callee& callee, ir::Type
       return result.valid() ? result : code_.zero(own);
     }
     case Callee::Kind::kStandard:
-      return ask<Body>().emit_standard(expr, callee, own);
+      return ask<StandardCode>().emit_standard(expr, callee, own);
     case Callee::Kind::kConversion:
       return ask<Conversions>().emit_conversion(expr, callee.conversion);
     case Callee::Kind::kReference:
@@ -183,11 +184,11 @@ ir::Place CallCode::call_place(const Expr& expr, const Callee& callee, ir::TypeI
       return place(args[0]);
     case FunctionRule::kSelect:
     case FunctionRule::kMux:
-      return ask<Body>().choose(args, *callee.row, type);
+      return ask<StandardCode>().choose(args, *callee.row, type);
     case FunctionRule::kExtreme:
-      return ask<Body>().extreme_string(args, *callee.row, type);
+      return ask<StandardCode>().extreme_string(args, *callee.row, type);
     case FunctionRule::kString:
-      return ask<Body>().string_function(args, *callee.row, type);
+      return ask<StandardCode>().string_function(args, *callee.row, type);
     case FunctionRule::kNumberSame:
     case FunctionRule::kReal:
     case FunctionRule::kTrunc:

@@ -1,6 +1,7 @@
 // Mocks: what tests put in the place of functions and of function block bodies.
 #include "frontend/lower/arguments.h"
 #include "frontend/lower/body.h"
+#include "frontend/lower/mock_code.h"
 #include "frontend/sema/test_build.h"
 #include "frontend/sema/variables.h"
 
@@ -19,7 +20,7 @@ ir::Step member(uint32_t index) {
 }  // namespace
 
 // The counter or switch of what a test names: an instance, or a function.
-std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slot) {
+std::optional<ir::Place> MockCode::mock_slot(ExprId target, uint32_t MockSlots::*slot) {
   const Expr& expr = tree_[target];
   const bool plain = expr.kind == ExprKind::kName;
   if (!plain || !ask<Variables>().find_variable(expr.name).valid()) {
@@ -61,7 +62,7 @@ std::optional<ir::Place> Body::mock_slot(ExprId target, uint32_t MockSlots::*slo
   return out;
 }
 
-void Body::mock_statement(const Stmt& stmt) {
+void MockCode::mock_statement(const Stmt& stmt) {
   if (!sema_.for_tests()) {
     error(DiagnosticCode::kTestOnly, stmt.span, "mocks are for tests only",
           "put it into a TEST block and run that with stc test");
@@ -85,7 +86,7 @@ void Body::mock_statement(const Stmt& stmt) {
       if (types().is_scalar(target.type)) {
         store(target, value(stmt.value, target.type));
       } else {
-        assign_aggregate(target, stmt.value);
+        ask<Body>().assign_aggregate(target, stmt.value);
       }
     }
   }
@@ -93,7 +94,7 @@ void Body::mock_statement(const Stmt& stmt) {
 }
 
 // MOCK_FUNCTION declarations of a test's file and of the test itself are active from its start.
-void Body::activate_mock_bodies() {
+void MockCode::activate_mock_bodies() {
   for (const PouInfo* function : ask<TestBuild>().mocked_functions()) {
     for (size_t i = 0; i < function->mock.bodies.size(); ++i) {
       if (!ask<TestBuild>().mock_applies(function->mock.bodies[i], *info_.decl)) continue;
@@ -104,7 +105,7 @@ void Body::activate_mock_bodies() {
 }
 
 // In front of the body of everything that a test may replace.
-void Body::mock_prologue() {
+void MockCode::mock_prologue() {
   if (!info_.mock.present) return;
   const bool function = info_.decl->kind == PouKind::kFunction;
   auto slot = [&](uint32_t index) {
@@ -152,7 +153,7 @@ void Body::mock_prologue() {
 }
 
 // Calls the body of a MOCK_FUNCTION with the parameters of this function; same local numbers.
-void Body::forward_to_mock(const PouInfo& mock) {
+void MockCode::forward_to_mock(const PouInfo& mock) {
   info_.callees.push_back(mock.number);
   std::vector<VarId> results;
   for (uint32_t i = 0; i < info_.locals.size(); ++i) {

@@ -1,7 +1,7 @@
 // Standard functions with scalar results.
 #include <algorithm>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/standard_code.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/operator_types.h"
@@ -56,7 +56,7 @@ ir::Op shift_op(FunctionId id) {
 
 }  // namespace
 
-ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own) {
+ir::ValueId StandardCode::emit_standard(const Expr& expr, const Callee& callee, ir::TypeId own) {
   const stdlib::FunctionRow& row = *callee.row;
   std::vector<ExprId> args = ask<StandardCalls>().standard_arguments(expr, row);
   switch (row.rule) {
@@ -114,8 +114,8 @@ ir::ValueId Body::emit_standard(const Expr& expr, const Callee& callee, ir::Type
   return code_.zero(own);
 }
 
-ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                                ir::TypeId own) {
+ir::ValueId StandardCode::real_function(const std::vector<ExprId>& args,
+                                        const stdlib::FunctionRow& row, ir::TypeId own) {
   ir::Scalar machine = scalar(own);
   if (row.id == FunctionId::kSqrt) {
     return build_.unary(ir::Op::kSqrt, machine, value(args[0], own));
@@ -129,7 +129,8 @@ ir::ValueId Body::real_function(const std::vector<ExprId>& args, const stdlib::F
 }
 
 // ADD(a, b, c) is a + b + c.
-ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId own) {
+ir::ValueId StandardCode::fold_operator(const std::vector<ExprId>& args, BinaryOp op,
+                                        ir::TypeId own) {
   // As DINT, though no argument is one: computed_in() has asked for it.
   const bool wide = scalar(own) == ir::Scalar::kI32 && sema_.options.dialect != Dialect::kIec &&
                     std::all_of(args.begin(), args.end(), [&](ExprId arg) {
@@ -157,8 +158,8 @@ ir::ValueId Body::fold_operator(const std::vector<ExprId>& args, BinaryOp op, ir
 }
 
 // Counts beyond the width are all the same, so they may be cut to what fits a u32.
-ir::ValueId Body::shift(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                        ir::TypeId own) {
+ir::ValueId StandardCode::shift(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                                ir::TypeId own) {
   ir::ValueId in = value(args[0], own);
   Typed count = natural(args[1]);
   ir::Scalar machine = scalar(count.type);
@@ -181,8 +182,8 @@ ir::ValueId ValueCode::extreme_of(bool largest, ir::TypeId type, ir::ValueId a, 
   return build_.binary(largest ? ir::Op::kMax : ir::Op::kMin, machine, a, b);
 }
 
-ir::ValueId Body::extreme(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                          ir::TypeId own) {
+ir::ValueId StandardCode::extreme(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                                  ir::TypeId own) {
   if (row.id == FunctionId::kLimit) {
     ir::ValueId low = value(args[0], own);
     ir::ValueId in = value(args[1], own);
@@ -197,7 +198,7 @@ ir::ValueId Body::extreme(const std::vector<ExprId>& args, const stdlib::Functio
 }
 
 // Out of range takes the nearest argument: the comparisons say so by themselves.
-ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
+ir::ValueId StandardCode::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
   Typed selector = natural(args[0]);
   ir::ValueId wide_selector =
       code_.machine_convert(selector.value, scalar(selector.type), ir::Scalar::kI64);
@@ -212,7 +213,8 @@ ir::ValueId Body::multiplex(const std::vector<ExprId>& args, ir::TypeId own) {
 }
 
 // Every argument is evaluated once; each is compared with the next.
-ir::ValueId Body::compare_chain(const std::vector<ExprId>& args, BinaryOp op, ir::TypeId common) {
+ir::ValueId StandardCode::compare_chain(const std::vector<ExprId>& args, BinaryOp op,
+                                        ir::TypeId common) {
   if (!common.valid()) return code_.zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
   common = compared_type(*this, common, args);

@@ -1,7 +1,7 @@
 // Standard functions that look at the bits of a value: order of bytes, validity.
 #include <limits>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/standard_code.h"
 
 namespace frontend {
 namespace {
@@ -17,7 +17,8 @@ ir::Scalar bits_of_float(ir::Scalar machine) {
 }  // namespace
 
 // Values are little endian on every machine, so one direction of each pair is the value itself.
-ir::ValueId Body::byte_order(ExprId argument, const stdlib::FunctionRow& row, ir::TypeId own) {
+ir::ValueId StandardCode::byte_order(ExprId argument, const stdlib::FunctionRow& row,
+                                     ir::TypeId own) {
   ir::ValueId in = value(argument, own);
   ir::Scalar machine = scalar(own);
   uint32_t bytes = ir::scalar_size(machine);
@@ -32,7 +33,7 @@ ir::ValueId Body::byte_order(ExprId argument, const stdlib::FunctionRow& row, ir
 }
 
 // x - x is 0 for numbers, and NaN for infinities and NaN.
-ir::ValueId Body::is_valid(ExprId argument, const stdlib::FunctionRow& row) {
+ir::ValueId StandardCode::is_valid(ExprId argument, const stdlib::FunctionRow& row) {
   Typed in = natural(argument);
   ir::Scalar machine = scalar(in.type);
   if (row.id == FunctionId::kIsValid) {

@@ -1,5 +1,5 @@
 // Standard functions on strings, and choices between values that are no scalars.
-#include "frontend/lower/body.h"
+#include "frontend/lower/standard_code.h"
 
 namespace frontend {
 namespace {
@@ -57,7 +57,8 @@ ir::ValueId in_range(Builder& build, FunctionId id, ir::ValueId length,
 
 }  // namespace
 
-ir::ValueId Body::string_number(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
+ir::ValueId StandardCode::string_number(const std::vector<ExprId>& args,
+                                        const stdlib::FunctionRow& row) {
   ir::ValueList operands;
   bool is_wide = false;
   for (ExprId arg : args) {
@@ -70,8 +71,8 @@ ir::ValueId Body::string_number(const std::vector<ExprId>& args, const stdlib::F
 }
 
 // The result lies in a temporary of its own, so it never overlaps a source.
-ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                                ir::TypeId type) {
+ir::Place StandardCode::string_function(const std::vector<ExprId>& args,
+                                        const stdlib::FunctionRow& row, ir::TypeId type) {
   bool is_wide = wide(type);
   if (row.id == FunctionId::kConcat) return concat(args, type, is_wide);
   ir::Place result = temporary_place(type);
@@ -97,7 +98,7 @@ ir::Place Body::string_function(const std::vector<ExprId>& args, const stdlib::F
   return result;
 }
 
-ir::Place Body::concat(const std::vector<ExprId>& args, ir::TypeId type, bool is_wide) {
+ir::Place StandardCode::concat(const std::vector<ExprId>& args, ir::TypeId type, bool is_wide) {
   NativeId id = string_native(FunctionId::kConcat, is_wide);
   ir::Place sum = place(args[0]);
   for (size_t i = 1; i < args.size(); ++i) {
@@ -111,8 +112,8 @@ ir::Place Body::concat(const std::vector<ExprId>& args, ir::TypeId type, bool is
 }
 
 // MAX, MIN and LIMIT of strings: `result` becomes `next` when that is the better one.
-ir::Place Body::extreme_string(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                               ir::TypeId type) {
+ir::Place StandardCode::extreme_string(const std::vector<ExprId>& args,
+                                       const stdlib::FunctionRow& row, ir::TypeId type) {
   std::vector<ir::Place> places;
   for (ExprId arg : args) places.push_back(place(arg));
   bool limit = row.id == FunctionId::kLimit;
@@ -134,8 +135,8 @@ ir::Place Body::extreme_string(const std::vector<ExprId>& args, const stdlib::Fu
 }
 
 // SEL and MUX of strings, structures and arrays.
-ir::Place Body::choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
-                       ir::TypeId type) {
+ir::Place StandardCode::choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
+                               ir::TypeId type) {
   bool select = row.id == FunctionId::kSel;
   ir::Place result = temporary_place(type);
   Typed selector =

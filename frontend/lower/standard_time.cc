@@ -1,7 +1,7 @@
 // Standard functions on durations, dates and moments.
 #include <limits>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/standard_code.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/sema/standard_calls.h"
 
@@ -37,7 +37,8 @@ bool holds_part(const ir::TypeTable& types, ir::TypeId type, uint32_t part) {
 
 }  // namespace
 
-ir::ValueId Body::time_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
+ir::ValueId StandardCode::time_function(const std::vector<ExprId>& args,
+                                        const stdlib::FunctionRow& row) {
   Typed operands[2];
   for (uint32_t i = 0; i < 2; ++i) {
     auto kind = kind_of_name(stdlib::operand_type(row, i));
@@ -48,7 +49,7 @@ ir::ValueId Body::time_function(const std::vector<ExprId>& args, const stdlib::F
 }
 
 // A date alone is midnight, a time of day alone is on 1970-01-01.
-ir::ValueId Body::moment(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
+ir::ValueId StandardCode::moment(const std::vector<ExprId>& args, const stdlib::FunctionRow& row) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   uint32_t first = first_part(row);
   ir::ValueList given;
@@ -72,14 +73,14 @@ ir::ValueId ValueCode::moment_part(ir::ValueId ns, uint32_t part) {
   return native(NativeId::kMomentPart, {ns, build_.constant(ir::Scalar::kI32, part)});
 }
 
-ir::ValueId Body::day_of_week(ExprId moment) {
+ir::ValueId StandardCode::day_of_week(ExprId moment) {
   constexpr uint32_t kDayOfWeek = 7;
   ir::ValueId day = code_.moment_part(natural(moment).value, kDayOfWeek);
   return code_.machine_convert(day, ir::Scalar::kI32, ir::Scalar::kI16);
 }
 
 // SPLIT_DATE(IN := d, YEAR => y, ...): a statement.
-void Body::split(const Expr& call, const stdlib::FunctionRow& row) {
+void StandardCode::split(const Expr& call, const stdlib::FunctionRow& row) {
   std::vector<ExprId> args = ask<StandardCalls>().standard_arguments(call, row);
   if (args.empty() || !infer(args[0]).type.valid()) return;
   ir::ValueId ns = value(args[0], elementary(*kind_of_name(stdlib::operand_type(row, 0))));

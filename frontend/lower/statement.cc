@@ -2,6 +2,7 @@
 #include "frontend/lower/body.h"
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
+#include "frontend/lower/mock_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 
@@ -60,7 +61,7 @@ void Body::statement(const Stmt& stmt) {
       return try_statement(stmt);
     case StmtKind::kMock:
     case StmtKind::kMockFunction:
-      return mock_statement(stmt);
+      return ask<MockCode>().mock_statement(stmt);
   }
 }
 

@@ -1,7 +1,8 @@
 // Assertions and the other calls of tests. A failed assertion leaves its message in a global
 // and traps, which ends the test; stc test shows both.
-#include "frontend/lower/body.h"
 #include "frontend/lower/conversions.h"
+#include "frontend/lower/mock_code.h"
+#include "frontend/lower/test_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/operator_types.h"
@@ -40,7 +41,7 @@ Relation relation_of(TestCall call) {
 
 }  // namespace
 
-void Body::test_call(const Expr& call, const TestCallRow& row) {
+void TestCode::test_call(const Expr& call, const TestCallRow& row) {
   std::vector<ExprId> args;
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
@@ -81,7 +82,7 @@ void Body::test_call(const Expr& call, const TestCallRow& row) {
   }
 }
 
-bool Body::is_message(ExprId message) {
+bool TestCode::is_message(ExprId message) {
   const Note& note = infer(message);
   if (!note.type.valid() || is_string(types(), note.type)) return note.type.valid();
   error(DiagnosticCode::kWrongArgument, tree_[message].span,
@@ -90,7 +91,7 @@ bool Body::is_message(ExprId message) {
   return false;
 }
 
-bool Body::is_time_ahead(ExprId duration) {
+bool TestCode::is_time_ahead(ExprId duration) {
   const Note& note = infer(duration);
   if (!note.type.valid()) return false;
   const bool time = traits_of(types(), note.type).duration;
@@ -107,7 +108,7 @@ bool Body::is_time_ahead(ExprId duration) {
   return false;
 }
 
-void Body::advance_time(ExprId duration) {
+void TestCode::advance_time(ExprId duration) {
   const Typed ns{value(duration, elementary(ir::Kind::kLtime)), elementary(ir::Kind::kLtime)};
   if (!infer(duration).constant) {
     const ir::ValueId zero = build_.constant(ir::Scalar::kI64, 0);
@@ -119,7 +120,7 @@ void Body::advance_time(ExprId duration) {
   build_.advance_time(ns.value);
 }
 
-void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {
+void TestCode::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message) {
   const Relation relation = relation_of(call);
   const Note common =
       ask<OperatorTypes>().unify(infer(args[0]), infer(args[1]), tree_[args[1]].span);
@@ -153,7 +154,7 @@ void Body::assert_relation(TestCall call, const std::vector<ExprId>& args, ExprI
 }
 
 // NaN is near nothing.
-void Body::assert_near(const std::vector<ExprId>& args, ExprId message) {
+void TestCode::assert_near(const std::vector<ExprId>& args, ExprId message) {
   const ir::TypeId lreal = elementary(ir::Kind::kLreal);
   const ir::ValueId actual = value(args[0], lreal);
   const ir::ValueId expected = value(args[1], lreal);
@@ -168,8 +169,8 @@ void Body::assert_near(const std::vector<ExprId>& args, ExprId message) {
   });
 }
 
-void Body::verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message) {
-  const auto calls = mock_slot(args[0], &MockSlots::calls);
+void TestCode::verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message) {
+  const auto calls = ask<MockCode>().mock_slot(args[0], &MockSlots::calls);
   if (!calls) return;
   const ir::TypeId udint = elementary(ir::Kind::kUdint);
   const Typed count{build_.load(*calls, ir::Scalar::kU32), udint};
@@ -184,7 +185,8 @@ void Body::verify_calls(const std::vector<ExprId>& args, bool exact, ExprId mess
 }
 
 // `what` is built where the assertion has failed.
-void Body::fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what) {
+void TestCode::fail_unless(ir::ValueId holds, ExprId message,
+                           const std::function<ir::Place()>& what) {
   const ir::BlockId failed = build_.new_block();
   const ir::BlockId passed = build_.new_block();
   build_.branch(holds, passed, failed);
@@ -204,7 +206,7 @@ void Body::fail_unless(ir::ValueId holds, ExprId message, const std::function<ir
   build_.start(passed);
 }
 
-ir::Place Body::constant_text(std::string text) {
+ir::Place TestCode::constant_text(std::string text) {
   ir::Place place;
   place.base = ir::PlaceBase::kConst;
   place.base_type = place.type =
@@ -214,14 +216,14 @@ ir::Place Body::constant_text(std::string text) {
 }
 
 // Longer than any number, time, date or name of an enumerator that fits a message.
-ir::Place Body::text_of(Typed value) {
+ir::Place TestCode::text_of(Typed value) {
   ir::Place text = temporary_place(sema_.program.types.string(kValueText));
   ask<Conversions>().write_text(text, value);
   return text;
 }
 
 // Three buffers serve all messages of a body; neither operand is overwritten.
-ir::Place Body::joined(const ir::Place& first, const ir::Place& second) {
+ir::Place TestCode::joined(const ir::Place& first, const ir::Place& second) {
   if (body_.message_buffers[0] == Lowering::kNoLocal) {
     for (uint32_t& buffer : body_.message_buffers) {
       buffer = build_.temporary(sema_.program.types.string(kMessageText));

@@ -1,0 +1,33 @@
+// Phase: assertions and the other calls of tests (test_call.cc). It reads facts and what a build
+// for tests has added (Tests), reports wrong arguments, and writes code that puts a message
+// together and traps.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "frontend/lower/body_phase.h"
+
+namespace frontend {
+
+class TestCode : public BodyPhase {
+ public:
+  using BodyPhase::BodyPhase;
+
+  void test_call(const Expr& call, const TestCallRow& row);
+
+ private:
+  void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
+  void assert_near(const std::vector<ExprId>& args, ExprId message);
+  bool is_message(ExprId message);  // reports, as the next one does
+  bool is_time_ahead(ExprId duration);
+  void advance_time(ExprId duration);
+  void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
+  void fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what);
+  ir::Place constant_text(std::string text);
+  ir::Place text_of(Typed value);
+  ir::Place joined(const ir::Place& first, const ir::Place& second);
+};
+
+}  // namespace frontend
