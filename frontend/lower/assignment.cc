@@ -1,6 +1,6 @@
 // Assignments, also as expressions: `a := b := 3`, `x S= y`. The indices of the left side
 // are evaluated first, then the value.
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
 #include "frontend/lower/method_code.h"
@@ -10,7 +10,7 @@
 
 namespace frontend {
 
-void Body::assign(const Stmt& stmt) {
+void Assignments::assign(const Stmt& stmt) {
   if (stmt.assign == AssignOp::kReference) return ask<References>().bind_reference(stmt);
   if (stmt.assign == AssignOp::kAttempt) {
     ask<References>().attempt(stmt.target, stmt.value, stmt.span);
@@ -33,7 +33,7 @@ void Body::assign(const Stmt& stmt) {
   }
 }
 
-std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::SourceSpan span) {
+std::optional<Target> Assignments::assign_value(ExprId left, ExprId right, base::SourceSpan span) {
   const Expr& source = tree_[right];
   bool list = source.kind == ExprKind::kArrayInit || source.kind == ExprKind::kStructInit;
   auto to = target(left);
@@ -53,12 +53,13 @@ std::optional<Target> Body::assign_value(ExprId left, ExprId right, base::Source
   return to;
 }
 
-void Body::allow_set_or_reset(base::SourceSpan span) {
+void Assignments::allow_set_or_reset(base::SourceSpan span) {
   allow_extension("an assignment with S= or R=", span, "write IF condition THEN x := TRUE; END_IF");
 }
 
 // The value of `x S= y` is y: in `a S= b R= y` both follow the same y.
-ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span) {
+ir::ValueId Assignments::set_or_reset(AssignOp op, ExprId left, ExprId right,
+                                      base::SourceSpan span) {
   ir::TypeId boolean = elementary(ir::Kind::kBool);
   auto to = target(left);
   ir::ValueId condition = value(right, boolean);
@@ -83,7 +84,7 @@ ir::ValueId Body::set_or_reset(AssignOp op, ExprId left, ExprId right, base::Sou
 }
 
 // The value of an assignment is what its variable holds then.
-ir::ValueId Body::emit_assignment(const Expr& expr) {
+ir::ValueId Assignments::emit_assignment(const Expr& expr) {
   if (expr.assign == AssignOp::kSet || expr.assign == AssignOp::kReset) {
     allow_set_or_reset(expr.span);
     return set_or_reset(expr.assign, expr.operand, expr.right, expr.span);
@@ -95,12 +96,12 @@ ir::ValueId Body::emit_assignment(const Expr& expr) {
   return to ? ask<Targets>().load(*to) : code_.zero(infer(expr.operand).type);
 }
 
-ir::Place Body::assignment_place(ExprId id, const Expr& expr) {
+ir::Place Assignments::assignment_place(ExprId id, const Expr& expr) {
   auto to = assign_value(expr.operand, expr.right, expr.span);
   return to ? to->place : temporary_place(infer(id).type);
 }
 
-void Body::assign_aggregate(const Target& to, ExprId value) {
+void Assignments::assign_aggregate(const Target& to, ExprId value) {
   const Expr& expr = tree_[value];
   if (types().is_instance(to.type)) {
     error(DiagnosticCode::kNotAssignable, expr.span,

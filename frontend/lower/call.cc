@@ -8,6 +8,7 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/standard_code.h"
 #include "frontend/lower/test_code.h"
+#include "frontend/sema/calls.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/standard_calls.h"
 

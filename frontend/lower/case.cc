@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/case_code.h"
+#include "frontend/lower/statements.h"
 #include "frontend/sema/constants.h"
 #include "frontend/sema/width.h"
 
 namespace frontend {
 
-struct Body::Interval {
+struct CaseCode::Interval {
   Wide low;
   Wide high;
   ir::BlockId arm;
@@ -17,12 +18,12 @@ struct Body::Interval {
 };
 
 // Intervals first..last - 1: one to be tested, or several for a table.
-struct Body::CaseLeaf {
+struct CaseCode::CaseLeaf {
   size_t first;
   size_t last;
 };
 
-struct Body::CaseTests {
+struct CaseCode::CaseTests {
   const std::vector<Interval>& intervals;
   const std::vector<CaseLeaf>& leaves;
   ir::ValueId selector;
@@ -42,7 +43,7 @@ constexpr Wide kMostEntries = 1024;
 
 }  // namespace
 
-void Body::case_statement(const Stmt& stmt) {
+void CaseCode::case_statement(const Stmt& stmt) {
   const Note& note = infer(stmt.value);
   ir::TypeId type = without_range(types(), note.type);
   Traits traits = traits_of(types(), type);
@@ -72,18 +73,18 @@ void Body::case_statement(const Stmt& stmt) {
       body_.counting.count(SiteKind::kBranch, stmt.span.begin, "CASE: line " + std::to_string(line),
                            i);
     }
-    statements(tree_.cases[stmt.arms.first + i].body);
+    ask<Statements>().write(tree_.cases[stmt.arms.first + i].body);
     if (build_.reachable()) build_.jump(done);
   }
   build_.start(otherwise);
   body_.counting.count(SiteKind::kBranch, stmt.span.begin, "CASE: ELSE", stmt.arms.count);
-  statements(stmt.else_body);
+  ask<Statements>().write(stmt.else_body);
   if (build_.reachable()) build_.jump(done);
   build_.start(done);
 }
 
-void Body::report_missing_labels(const Stmt& stmt, ir::TypeId type,
-                                 const std::vector<Interval>& intervals) {
+void CaseCode::report_missing_labels(const Stmt& stmt, ir::TypeId type,
+                                     const std::vector<Interval>& intervals) {
   std::string missing;
   for (const ir::EnumLiteral& literal : types()[type].literals) {
     auto after = std::upper_bound(
@@ -97,8 +98,8 @@ void Body::report_missing_labels(const Stmt& stmt, ir::TypeId type,
           "add it, or an ELSE");
 }
 
-std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId type,
-                                                 const std::vector<ir::BlockId>& arms) {
+std::vector<CaseCode::Interval> CaseCode::case_intervals(const Stmt& stmt, ir::TypeId type,
+                                                         const std::vector<ir::BlockId>& arms) {
   std::vector<Interval> intervals;
   bool is_signed = ir::is_signed(scalar(type));
   auto wide_of = [&](uint64_t bits) {
@@ -136,7 +137,7 @@ std::vector<Body::Interval> Body::case_intervals(const Stmt& stmt, ir::TypeId ty
   return intervals;
 }
 
-std::vector<Body::CaseLeaf> Body::case_leaves(const std::vector<Interval>& intervals) {
+std::vector<CaseCode::CaseLeaf> CaseCode::case_leaves(const std::vector<Interval>& intervals) {
   auto fits = [&](size_t i) {
     return intervals[i].high - intervals[i].low < kMostAlike &&
            intervals[i].low >= std::numeric_limits<int32_t>::min() &&
@@ -157,7 +158,7 @@ std::vector<Body::CaseLeaf> Body::case_leaves(const std::vector<Interval>& inter
   return leaves;
 }
 
-void Body::case_tree(const CaseTests& tests, size_t first, size_t last) {
+void CaseCode::case_tree(const CaseTests& tests, size_t first, size_t last) {
   if (last - first > kLinearTests) {
     size_t middle = first + (last - first) / 2;
     ir::BlockId below = build_.new_block();
@@ -184,7 +185,7 @@ void Body::case_tree(const CaseTests& tests, size_t first, size_t last) {
   if (first == last) build_.jump(tests.otherwise);
 }
 
-void Body::case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next) {
+void CaseCode::case_test(const CaseTests& tests, const Interval& interval, ir::BlockId next) {
   auto test = [&](ir::Op op, ir::ValueId a, ir::ValueId b, ir::BlockId yes) {
     build_.branch(build_.compare(op, tests.machine, a, b), yes, next);
   };
@@ -197,7 +198,7 @@ void Body::case_test(const CaseTests& tests, const Interval& interval, ir::Block
   test(ir::Op::kLe, tests.selector, high, interval.arm);
 }
 
-void Body::case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next) {
+void CaseCode::case_table(const CaseTests& tests, const CaseLeaf& leaf, ir::BlockId next) {
   Wide low = tests.intervals[leaf.first].low;
   std::vector<ir::BlockId> targets;
   for (size_t i = leaf.first; i < leaf.last; ++i) {

@@ -2,8 +2,8 @@
 // transitions: chart_steps.cc; actions: chart_actions.cc.
 #include <algorithm>
 
-#include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
+#include "frontend/lower/statements.h"
 #include "frontend/lower/values.h"
 #include "frontend/sfc/declare.h"
 
@@ -45,7 +45,7 @@ void ChartBody::report_all() {
       for (ExprId indicator : use.indicators) infer(indicator);
     }
   }
-  for (const ChartAction& action : chart_.actions) ask<Body>().statements(action.body);
+  for (const ChartAction& action : chart_.actions) ask<Statements>().write(action.body);
 }
 
 void ChartBody::describe_net() {

@@ -1,7 +1,7 @@
 // Actions of charts: what steps ask of them, whether they run (action control of IEC 61131-3),
 // and their statements.
-#include "frontend/lower/body.h"
 #include "frontend/lower/chart.h"
+#include "frontend/lower/statements.h"
 #include "frontend/sema/variables.h"
 
 namespace frontend {
@@ -35,7 +35,7 @@ void ChartBody::unused_actions() {
 void ChartBody::action_statements(const ChartAction& action, ir::BlockId next) {
   ir::BlockId outer = body_.flow.exit;
   body_.flow.exit = next;
-  ask<Body>().statements(action.body);
+  ask<Statements>().write(action.body);
   body_.flow.exit = outer;
   if (build_.reachable()) build_.jump(next);
 }

@@ -1,10 +1,11 @@
 // PROGRAM p WITH t : T(in := g, out => h): inputs are copied before each scan of the
 // program, outputs after it. The other side is named where the configuration stands.
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
+#include "frontend/lower/frame.h"
 
 namespace frontend {
 
-void Body::connect_inputs() {
+void Frame::connect_inputs() {
   for (const Connection& connection : info_.connections) {
     const Arg& arg = tree_.args[connection.arg];
     const Variable& input = resolve(connection.parameter);
@@ -12,29 +13,29 @@ void Body::connect_inputs() {
     Target target;
     target.place = member_variable_place(input);
     target.type = input.type;
-    Body(body_, PouScope()).connect_input(target, arg);
+    Frame(body_, PouScope()).connect_input(target, arg);
   }
 }
 
-void Body::connect_input(const Target& input, const Arg& arg) {
+void Frame::connect_input(const Target& input, const Arg& arg) {
   set_line(arg.span);
   if (types().is_scalar(input.type)) {
     store(input, value(arg.value, input.type));
   } else {
-    assign_aggregate(input, arg.value);
+    ask<Assignments>().assign_aggregate(input, arg.value);
   }
 }
 
-void Body::connect_outputs() {
+void Frame::connect_outputs() {
   for (const Connection& connection : info_.connections) {
     const Arg& arg = tree_.args[connection.arg];
     const Variable& output = resolve(connection.parameter);
     if (output.section != VarSection::kOutput || !output.type.valid()) continue;
-    Body(body_, PouScope()).connect_output(output, arg);
+    Frame(body_, PouScope()).connect_output(output, arg);
   }
 }
 
-void Body::connect_output(const Variable& output, const Arg& arg) {
+void Frame::connect_output(const Variable& output, const Arg& arg) {
   ir::Place from = member_variable_place(output);
   set_line(arg.span);
   auto to = target(arg.value);

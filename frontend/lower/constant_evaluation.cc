@@ -1,6 +1,5 @@
 // Constant calls: `N : INT := MAX(A, 3)` is lowered to a function of its own, which the
 // evaluator runs. So there is one definition of what each standard function does.
-#include "frontend/lower/body.h"
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/width.h"
@@ -11,9 +10,18 @@ namespace {
 
 constexpr uint64_t kBudget = 100'000;
 
-}  // namespace
+// One expression that is known, as a function of its own.
+class Evaluation : public BodyPhase {
+ public:
+  using BodyPhase::BodyPhase;
+  // Its value, by running its code here and now.
+  std::optional<Constant> evaluate(ExprId id, ir::TypeId context);
 
-std::optional<Constant> Body::evaluate(ExprId id, ir::TypeId context) {
+ private:
+  std::optional<Constant> run_alone(uint32_t local, base::SourceSpan span);
+};
+
+std::optional<Constant> Evaluation::evaluate(ExprId id, ir::TypeId context) {
   const base::SourceSpan span = tree_[id].span;
   body_.lines.leave_out(span.begin);
   Note note = infer(id);
@@ -36,7 +44,7 @@ std::optional<Constant> Body::evaluate(ExprId id, ir::TypeId context) {
   return run_alone(result.base_index, span);
 }
 
-std::optional<Constant> Body::run_alone(uint32_t local, base::SourceSpan span) {
+std::optional<Constant> Evaluation::run_alone(uint32_t local, base::SourceSpan span) {
   build_.finish();
   ir::TypeId type = body_.out.locals[local].type;
   ir::EvalResult result = ir::evaluate_alone(sema_.program, body_.out, local, kBudget);
@@ -54,12 +62,14 @@ std::optional<Constant> Body::run_alone(uint32_t local, base::SourceSpan span) {
   return value;
 }
 
+}  // namespace
+
 std::optional<Constant> evaluate_constant(Sema& sema, const PouScope& scope, ExprId expr,
                                           ir::TypeId context) {
   PouInfo info;
   Lowering body(sema, info, kNoPou, ir::Pou{});
   body.evaluating = true;
-  return Body(body, scope).evaluate(expr, context);
+  return Evaluation(body, scope).evaluate(expr, context);
 }
 
 }  // namespace frontend

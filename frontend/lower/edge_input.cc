@@ -1,10 +1,10 @@
 // R_EDGE and F_EDGE: inside, such an input is TRUE in the call that sees the edge. What
 // the caller wrote, or left as it was, is compared with what the call before saw.
-#include "frontend/lower/body.h"
+#include "frontend/lower/frame.h"
 
 namespace frontend {
 
-void Body::detect_edges() {
+void Frame::detect_edges() {
   for (VarId id : info_.variables) {
     const Variable& input = resolve(id);
     if (!input.edge.valid() || !input.type.valid()) continue;

@@ -3,7 +3,7 @@
 // result is the default of its type. The same when the call, or an argument of it, traps and ENO is
 // connected. Who declares parameters of these names has them.
 #include "frontend/lower/enable.h"
-#include "frontend/lower/body.h"
+#include "frontend/lower/try_code.h"
 #include "frontend/sema/calls.h"
 
 namespace frontend {
@@ -46,7 +46,7 @@ void EnableCode::open_enable(Enable& enable) {
   }
   if (enable.eno == nullptr) return;
   enable.handler = build_.new_block();
-  ask<Body>().enter_try(enable.handler, {}, enable.eno->span);
+  ask<TryCode>().enter_try(enable.handler, {}, enable.eno->span);
   body_.flow.tries.back().eno = true;
 }
 
@@ -61,7 +61,7 @@ void EnableCode::close_enable(Enable& enable, ir::ValueList result, ir::TypeId t
   if (enable.handler.valid()) {
     ir::BlockId good = build_.new_block();
     build_.end_try(good);
-    ask<Body>().leave_try();
+    ask<TryCode>().leave_try();
     build_.start(good);
   }
   store_eno(enable, true);

@@ -1,12 +1,13 @@
 // FOR (docs/LANGUAGE.md): bounds and step are evaluated once; the loop ends
 // correctly at the limits of its variable's type; step 0 traps; afterwards the
 // variable is last + step, except at the type's limit, where it stays.
-#include "frontend/lower/body.h"
+#include "frontend/lower/for_code.h"
+#include "frontend/lower/statements.h"
 #include "frontend/sema/constants.h"
 
 namespace frontend {
 
-struct Body::ForLoop {
+struct ForCode::ForLoop {
   ir::Place variable;
   ir::TypeId type;  // without subrange
   ir::Scalar machine = ir::Scalar::kI16;
@@ -36,10 +37,10 @@ ir::Kind signed_kind(ir::Scalar machine) {
 
 }  // namespace
 
-void Body::for_statement(const Stmt& stmt) {
+void ForCode::for_statement(const Stmt& stmt) {
   ForLoop loop;
   if (!for_head(stmt, loop)) {
-    statements(stmt.body);
+    ask<Statements>().write(stmt.body);
     return;
   }
   VarId variable = infer(stmt.target).variable;
@@ -62,7 +63,7 @@ void Body::for_statement(const Stmt& stmt) {
   for_test(loop, body, exit);
   build_.start(body);
   if (variable.valid()) body_.flow.for_variables.push_back(variable);
-  loop_body(stmt.body, next, exit);
+  ask<Statements>().loop_body(stmt.body, next, exit);
   if (variable.valid()) body_.flow.for_variables.pop_back();
   build_.start(next);
   set_line(stmt.span);
@@ -70,7 +71,7 @@ void Body::for_statement(const Stmt& stmt) {
   build_.start(exit);
 }
 
-bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
+bool ForCode::for_head(const Stmt& stmt, ForLoop& loop) {
   auto to = target(stmt.target);
   if (!to) return false;
   Traits traits = traits_of(types(), to->type);
@@ -101,7 +102,7 @@ bool Body::for_head(const Stmt& stmt, ForLoop& loop) {
   return true;
 }
 
-void Body::for_step(const Stmt& stmt, ForLoop& loop) {
+void ForCode::for_step(const Stmt& stmt, ForLoop& loop) {
   loop.constant_step = 1;
   if (!stmt.by.valid()) return;
   const Note& note = infer(stmt.by);
@@ -124,7 +125,7 @@ void Body::for_step(const Stmt& stmt, ForLoop& loop) {
   loop.upwards = build_.compare(ir::Op::kLt, machine, none, loop.step);
 }
 
-void Body::for_test(const ForLoop& loop, ir::BlockId body, ir::BlockId exit) {
+void ForCode::for_test(const ForLoop& loop, ir::BlockId body, ir::BlockId exit) {
   const ir::ValueId variable = build_.load(loop.variable, loop.machine);
   const ir::ValueId now = code_.machine_convert(variable, loop.machine, loop.bound);
   auto not_above = [&] { return build_.compare(ir::Op::kLe, loop.bound, now, loop.to); };
@@ -138,7 +139,7 @@ void Body::for_test(const ForLoop& loop, ir::BlockId body, ir::BlockId exit) {
   build_.branch(build_.select(ir::Scalar::kBool, loop.upwards, down, up), body, exit);
 }
 
-void Body::for_advance(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) {
+void ForCode::for_advance(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) {
   if (loop.constant_step) {
     for_advance_constant(loop, head, exit);
   } else {
@@ -147,7 +148,7 @@ void Body::for_advance(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) 
 }
 
 // The test against the type's limit falls away where the end keeps away from it.
-void Body::for_advance_constant(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) {
+void ForCode::for_advance_constant(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) {
   Wide step = *loop.constant_step;
   bool up = step > 0;
   Wide last = up ? loop.limits.high - step : loop.limits.low - step;  // from there one more fits
@@ -173,7 +174,7 @@ void Body::for_advance_constant(const ForLoop& loop, ir::BlockId head, ir::Block
   build_.jump(head);
 }
 
-void Body::for_advance_variable(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) {
+void ForCode::for_advance_variable(const ForLoop& loop, ir::BlockId head, ir::BlockId exit) {
   ir::ValueId now = build_.load(loop.variable, loop.machine);
   ir::ValueId step = loop.step;
   if (!ir::is_signed(loop.machine)) step = build_.unary(ir::Op::kWrap, loop.machine, step);

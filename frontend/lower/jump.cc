@@ -1,11 +1,12 @@
 // JMP and labels. A label is reached from its own statement list and from everything
 // inside; nothing jumps into a block.
-#include "frontend/lower/body.h"
+#include "frontend/lower/statements.h"
+#include "frontend/lower/try_code.h"
 #include "frontend/sema/variables.h"
 
 namespace frontend {
 
-Flow::Labels Body::labels_of(Range32 list) {
+Flow::Labels Statements::labels_of(Range32 list) {
   Flow::Labels labels;
   for (uint32_t i = 0; i < list.count; ++i) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
@@ -25,14 +26,14 @@ Flow::Labels Body::labels_of(Range32 list) {
   return labels;
 }
 
-void Body::label(const Stmt& stmt) {
+void Statements::label(const Stmt& stmt) {
   ir::BlockId block = body_.flow.labels.back().labels.find(tree_.name(stmt.name).text)->second;
   if (build_.started(block)) return;  // the name stands twice
   if (build_.reachable()) build_.jump(block);
   build_.start(block);
 }
 
-void Body::jump(const Stmt& stmt) {
+void Statements::jump(const Stmt& stmt) {
   if (!stmt.instruction) {
     allow_extension("JMP in Structured Text", stmt.span, "use IF, loops, EXIT and RETURN");
   }
@@ -41,7 +42,7 @@ void Body::jump(const Stmt& stmt) {
     auto found = body_.flow.labels[i].labels.find(wanted.text);
     if (found == body_.flow.labels[i].labels.end()) continue;
     leave_loops();
-    return go(found->second, body_.flow.labels[i].tries);
+    return ask<TryCode>().go(found->second, body_.flow.labels[i].tries);
   }
   std::string name = "`" + std::string(wanted.text) + "`";
   for (const Stmt& other : tree_.stmts) {

@@ -1,6 +1,6 @@
 // Mocks: what tests put in the place of functions and of function block bodies.
 #include "frontend/lower/arguments.h"
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/mock_code.h"
 #include "frontend/sema/test_build.h"
 #include "frontend/sema/variables.h"
@@ -86,7 +86,7 @@ void MockCode::mock_statement(const Stmt& stmt) {
       if (types().is_scalar(target.type)) {
         store(target, value(stmt.value, target.type));
       } else {
-        ask<Body>().assign_aggregate(target, stmt.value);
+        ask<Assignments>().assign_aggregate(target, stmt.value);
       }
     }
   }

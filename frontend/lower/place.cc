@@ -1,7 +1,7 @@
 // Places: where variables, members, elements and constants are.
 #include <algorithm>
 
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
 #include "frontend/lower/method_code.h"
@@ -82,7 +82,7 @@ ir::Place Places::raw_place(ExprId id) {
     case ExprKind::kCall:
       return ask<CallCode>().call_place(id, expr);
     case ExprKind::kAssign:
-      return ask<Body>().assignment_place(id, expr);
+      return ask<Assignments>().assignment_place(id, expr);
     case ExprKind::kResult:
       return ask<CurrentResults>().result_place(expr, note.type);
     default:

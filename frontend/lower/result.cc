@@ -1,6 +1,6 @@
 // The current result of an instruction list. Within straight code it is a value, at a label a
 // local that every way there assigns.
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/current_results.h"
 #include "frontend/sema/expressions.h"
 
@@ -23,7 +23,7 @@ void CurrentResults::keep_result(const Stmt& stmt) {
   uint32_t number = tree_[stmt.target].number;
   bool single = !tree_.results[number].at_label && type.valid() && types().is_scalar(type);
   if (!single) {
-    ask<Body>().assign_value(stmt.target, stmt.value, stmt.span);
+    ask<Assignments>().assign_value(stmt.target, stmt.value, stmt.span);
   } else {
     body_.result_values.emplace(number, value(stmt.value, type));
   }

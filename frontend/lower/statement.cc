@@ -1,14 +1,18 @@
 // Statements without a file of their own.
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/call_code.h"
+#include "frontend/lower/case_code.h"
 #include "frontend/lower/current_results.h"
+#include "frontend/lower/for_code.h"
 #include "frontend/lower/mock_code.h"
+#include "frontend/lower/statements.h"
+#include "frontend/lower/try_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/constants.h"
 
 namespace frontend {
 
-void Body::statements(Range32 list) {
+void Statements::write(Range32 list) {
   if (body_.flow.labels.empty()) ask<CurrentResults>().infer_results(list);
   body_.flow.labels.push_back({labels_of(list), body_.flow.tries.size()});
   bool warned = false;
@@ -22,12 +26,12 @@ void Body::statements(Range32 list) {
               "nothing gets here: the statement before always leaves");
       warned = true;
     }
-    statement(stmt);
+    write(stmt);
   }
   body_.flow.labels.pop_back();
 }
 
-void Body::statement(const Stmt& stmt) {
+void Statements::write(const Stmt& stmt) {
   set_line(stmt.span);
   body_.counting.statement(stmt);
   switch (stmt.kind) {
@@ -35,15 +39,15 @@ void Body::statement(const Stmt& stmt) {
     case StmtKind::kEmpty:
       return;
     case StmtKind::kAssign:
-      return assign(stmt);
+      return ask<Assignments>().assign(stmt);
     case StmtKind::kCall:
       return ask<CallCode>().call_statement(stmt);
     case StmtKind::kIf:
       return if_statement(stmt);
     case StmtKind::kCase:
-      return case_statement(stmt);
+      return ask<CaseCode>().case_statement(stmt);
     case StmtKind::kFor:
-      return for_statement(stmt);
+      return ask<ForCode>().for_statement(stmt);
     case StmtKind::kWhile:
       return while_statement(stmt);
     case StmtKind::kRepeat:
@@ -58,7 +62,7 @@ void Body::statement(const Stmt& stmt) {
     case StmtKind::kLabel:
       return label(stmt);
     case StmtKind::kTry:
-      return try_statement(stmt);
+      return ask<TryCode>().try_statement(stmt);
     case StmtKind::kMock:
     case StmtKind::kMockFunction:
       return ask<MockCode>().mock_statement(stmt);
@@ -75,7 +79,7 @@ ir::ValueId Values::condition(ExprId expr) {
   return value(expr, elementary(ir::Kind::kBool));
 }
 
-void Body::if_statement(const Stmt& stmt) {
+void Statements::if_statement(const Stmt& stmt) {
   ir::BlockId done = build_.new_block();
   bool open = false;  // the way past the last condition is still without a target
   for (uint32_t i = 0; i < stmt.arms.count; ++i) {
@@ -92,32 +96,32 @@ void Body::if_statement(const Stmt& stmt) {
     body_.counting.decide(ask<Values>().condition(branch.condition), then, otherwise, at,
                           i == 0 ? "IF" : "ELSIF");
     build_.start(then);
-    statements(branch.body);
+    write(branch.body);
     if (build_.reachable()) build_.jump(done);
     if (!last) build_.start(otherwise);
     open = !last;
   }
-  statements(stmt.else_body);
+  write(stmt.else_body);
   if (open && build_.reachable()) build_.jump(done);
   build_.start(done);
 }
 
 // Returns whether anything in it leaves the loop.
-bool Body::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
+bool Statements::loop_body(Range32 body, ir::BlockId again, ir::BlockId exit) {
   body_.flow.loops.push_back({again, exit, body_.flow.tries.size(), false});
-  statements(body);
+  write(body);
   const bool left = body_.flow.loops.back().left;
   body_.flow.loops.pop_back();
   if (build_.reachable()) build_.jump(again);
   return left;
 }
 
-void Body::leave_loops() {
+void Statements::leave_loops() {
   for (Flow::Loop& loop : body_.flow.loops) loop.left = true;
 }
 
 // `goes_on`: the value of the condition with which there is another round.
-void Body::check_end(ExprId condition, bool goes_on) {
+void Statements::check_end(ExprId condition, bool goes_on) {
   const Note& note = infer(condition);
   if (!note.constant || !note.type.valid() || !traits_of(types(), note.type).boolean) return;
   const auto value = ask<Constants>().fold(condition, elementary(ir::Kind::kBool));
@@ -128,7 +132,7 @@ void Body::check_end(ExprId condition, bool goes_on) {
           "let the condition depend on what the loop changes, or leave it with EXIT");
 }
 
-void Body::while_statement(const Stmt& stmt) {
+void Statements::while_statement(const Stmt& stmt) {
   ir::BlockId head = build_.new_block();
   ir::BlockId body = build_.new_block();
   ir::BlockId exit = build_.new_block();
@@ -141,7 +145,7 @@ void Body::while_statement(const Stmt& stmt) {
   build_.start(exit);
 }
 
-void Body::repeat_statement(const Stmt& stmt) {
+void Statements::repeat_statement(const Stmt& stmt) {
   ir::BlockId body = build_.new_block();
   ir::BlockId test = build_.new_block();
   ir::BlockId exit = build_.new_block();
@@ -154,7 +158,7 @@ void Body::repeat_statement(const Stmt& stmt) {
   build_.start(exit);
 }
 
-void Body::leave_loop(const Stmt& stmt) {
+void Statements::leave_loop(const Stmt& stmt) {
   bool exit = stmt.kind == StmtKind::kExit;
   if (body_.flow.loops.empty()) {
     error(DiagnosticCode::kExitOutsideLoop, stmt.span,
@@ -163,8 +167,13 @@ void Body::leave_loop(const Stmt& stmt) {
     return;
   }
   if (exit) body_.flow.loops.back().left = true;
-  go(exit ? body_.flow.loops.back().exit : body_.flow.loops.back().again,
-     body_.flow.loops.back().tries);
+  ask<TryCode>().go(exit ? body_.flow.loops.back().exit : body_.flow.loops.back().again,
+                    body_.flow.loops.back().tries);
+}
+
+void Statements::leave() {
+  leave_loops();
+  ask<TryCode>().go({}, 0);
 }
 
 }  // namespace frontend

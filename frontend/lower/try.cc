@@ -2,17 +2,18 @@
 // the body or the handler of a __TRY with a __FINALLY goes through that first: it notes where to
 // go on in a variable of the frame, and what is after the __FINALLY looks there.
 #include "base/limits.h"
-#include "frontend/lower/body.h"
+#include "frontend/lower/statements.h"
+#include "frontend/lower/try_code.h"
 #include "frontend/lower/write_checks.h"
 
 namespace frontend {
 
-void Body::try_statement(const Stmt& stmt) {
+void TryCode::try_statement(const Stmt& stmt) {
   const auto body = [&] {
     if (stmt.has_catch) {
       try_catch(stmt);
     } else {
-      statements(stmt.body);
+      ask<Statements>().write(stmt.body);
     }
   };
   if (stmt.has_finally) {
@@ -22,7 +23,7 @@ void Body::try_statement(const Stmt& stmt) {
   }
 }
 
-void Body::enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan span) {
+void TryCode::enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan span) {
   Flow::Try scope;
   scope.outer = build_.set_handler(handler);
   scope.finally = finally;
@@ -38,13 +39,13 @@ void Body::enter_try(ir::BlockId handler, ir::BlockId finally, base::SourceSpan 
   body_.flow.tries.push_back(std::move(scope));
 }
 
-void Body::leave_try() {
+void TryCode::leave_try() {
   build_.set_handler(body_.flow.tries.back().outer);
   body_.flow.tries.pop_back();
 }
 
 // Goes to `to`, which `tries` of the scopes are around; invalid: out of the POU.
-void Body::go(ir::BlockId to, size_t tries) {
+void TryCode::go(ir::BlockId to, size_t tries) {
   const ir::BlockId handler = build_.set_handler({});
   size_t at = body_.flow.tries.size();
   bool done = false;
@@ -72,8 +73,8 @@ void Body::go(ir::BlockId to, size_t tries) {
   build_.set_handler(handler);
 }
 
-void Body::try_finally(const std::function<void()>& body, Range32 finally_body,
-                       base::SourceSpan span) {
+void TryCode::try_finally(const std::function<void()>& body, Range32 finally_body,
+                          base::SourceSpan span) {
   ir::BlockId finally = build_.new_block();
   ir::BlockId handler = build_.new_block();
   ir::BlockId behind = build_.new_block();
@@ -88,7 +89,7 @@ void Body::try_finally(const std::function<void()>& body, Range32 finally_body,
   build_.store(scope.where, kU32, build_.trap_kind());
   build_.jump(finally);
   build_.start(finally);
-  statements(finally_body);
+  ask<Statements>().write(finally_body);
   if (build_.reachable()) {
     set_line({span.end, span.end});
     ir::ValueId where = build_.load(scope.where, kU32);
@@ -106,22 +107,22 @@ void Body::try_finally(const std::function<void()>& body, Range32 finally_body,
   build_.start(behind);
 }
 
-void Body::try_catch(const Stmt& stmt) {
+void TryCode::try_catch(const Stmt& stmt) {
   ir::BlockId handler = build_.new_block();
   ir::BlockId behind = build_.new_block();
   enter_try(handler, {}, stmt.span);
-  statements(stmt.body);
+  ask<Statements>().write(stmt.body);
   if (build_.reachable()) go(behind, body_.flow.tries.size() - 1);
   leave_try();
   build_.start(handler);
   if (stmt.target.valid()) catch_variable(stmt);
-  statements(tree_.branches[stmt.arms.first].body);
+  ask<Statements>().write(tree_.branches[stmt.arms.first].body);
   if (build_.reachable()) build_.jump(behind);
   build_.start(behind);
 }
 
 // An integer, or the library's ExceptionCode: 0 is no trap, so kinds count from 1.
-void Body::catch_variable(const Stmt& stmt) {
+void TryCode::catch_variable(const Stmt& stmt) {
   constexpr ir::Scalar kU32 = ir::Scalar::kU32;
   ir::ValueId kind = build_.trap_kind();
   kind = build_.binary(ir::Op::kAdd, kU32, kind, build_.constant(kU32, 1));

@@ -1,5 +1,5 @@
 // Scalar values of expressions, in the type that their place asks for.
-#include "frontend/lower/body.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/current_results.h"
 #include "frontend/lower/method_code.h"
@@ -153,7 +153,7 @@ ir::ValueId Values::emit(ExprId id, ir::TypeId own) {
     case ExprKind::kCall:
       return ask<CallCode>().emit_call(expr, own);
     case ExprKind::kAssign:
-      return ask<Body>().emit_assignment(expr);
+      return ask<Assignments>().emit_assignment(expr);
     case ExprKind::kResult:
       return ask<CurrentResults>().emit_result(id);
     default:
@@ -175,6 +175,11 @@ ir::ValueId Values::emit_bit(ExprId id) {
   }
   Typed word = natural(tree_[id].operand);
   return code_.part_of(word.value, scalar(word.type), offset, part.bit_size);
+}
+
+ir::ValueId ValueCode::zero(ir::TypeId type) {
+  bool usable = type.valid() && types().is_scalar(type);
+  return build_.constant(usable ? scalar(type) : ir::Scalar::kI32, 0);
 }
 
 ir::ValueId ValueCode::part_of(ir::ValueId word, ir::Scalar machine, uint32_t offset,

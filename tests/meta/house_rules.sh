@@ -40,9 +40,11 @@ size_of() {  # size_of COLUMN CLASS
   echo "$sizes" | awk -v column="$1" -v class="$2" \
     '$1 == class && $column > most {most = $column} END {print most + 0}'
 }
-large="Body Parser Sema"
+large="Parser Sema"
 for class in $large; do rule "methods_of_$class" "$(size_of 2 "$class")"; done
 rule methods_of_another_class "$(most_of 2 $large)"
+rule methods_of_a_class_that_lowers "$(awk -f tests/meta/class_sizes.awk frontend/lower/*.h |
+  awk '$2 > most {most = $2} END {print most + 0}')"
 rule friends_of_a_class "$(most_of 3)"
 [ $status -eq 0 ] && echo "all rules hold"
 exit $status

@@ -1,0 +1,31 @@
+// Phase: statements, one after the other (statement.cc), with IF, loops, EXIT, RETURN and JMP
+// (jump.cc). It reads and writes what surrounds them (Flow), counts what is reached (Counting), and
+// leaves the other kinds to phases of their own.
+#pragma once
+
+#include "frontend/lower/body_phase.h"
+
+namespace frontend {
+
+class Statements : public BodyPhase {
+ public:
+  using BodyPhase::BodyPhase;
+
+  void write(Range32 list);
+  bool loop_body(Range32 body, ir::BlockId again, ir::BlockId exit);
+  void leave();
+
+ private:
+  void write(const Stmt& stmt);
+  void if_statement(const Stmt& stmt);
+  void while_statement(const Stmt& stmt);
+  void repeat_statement(const Stmt& stmt);
+  void check_end(ExprId condition, bool goes_on);
+  void leave_loop(const Stmt& stmt);
+  void leave_loops();
+  Flow::Labels labels_of(Range32 list);
+  void jump(const Stmt& stmt);
+  void label(const Stmt& stmt);
+};
+
+}  // namespace frontend
