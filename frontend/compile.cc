@@ -1,7 +1,7 @@
 #include "frontend/compile.h"
-#include "frontend/sema/collection.h"
-#include "frontend/sema/configuration.h"
-#include "frontend/sema/interfaces.h"
+#include "frontend/sema/configuration/configuration.h"
+#include "frontend/sema/declarations/collection.h"
+#include "frontend/sema/declarations/interfaces.h"
 
 #include <algorithm>
 #include <memory>
@@ -14,13 +14,13 @@
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
 #include "frontend/parse/parse.h"
-#include "frontend/sema/common_uses.h"
-#include "frontend/sema/migrations.h"
-#include "frontend/sema/objects.h"
-#include "frontend/sema/rename_rules.h"
+#include "frontend/sema/configuration/common_uses.h"
+#include "frontend/sema/declarations/migrations.h"
+#include "frontend/sema/declarations/rename_rules.h"
+#include "frontend/sema/declarations/shared_addresses.h"
+#include "frontend/sema/declarations/unused.h"
+#include "frontend/sema/objects/objects.h"
 #include "frontend/sema/sema.h"
-#include "frontend/sema/shared_addresses.h"
-#include "frontend/sema/unused.h"
 #include "frontend/sfc/declare.h"
 #include "stdlib/sources.h"
 

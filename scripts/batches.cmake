@@ -1,12 +1,14 @@
 # Sources of one folder are compiled several at a time: what they include is parsed once. So names in
-# unnamed namespaces are unique in their folder. 1: each source alone, for work on one of them.
+# unnamed namespaces are unique in their folder, and in all of frontend/sema. 1: each source alone,
+# for work on one of them.
 set(STC_BATCH 16 CACHE STRING "Sources that are compiled together")
 
 # These have the same names in each source of the folder, or options of their own.
 set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/vm/exec/(handle|fused)_")
 
-# stc_batches(RESULT source...): the sources of one folder, or units that include them. What is
-# compiled small (small_sources.cmake) is apart from what is compiled for speed.
+# stc_batches(RESULT source...): the sources of one folder, or units that include them. With
+# STC_BATCH_FOLDER they are of that folder and those in it, and share units. What is compiled small
+# (small_sources.cmake) is apart from what is compiled for speed.
 function(stc_batches result)
   set(units)
   set(made)
@@ -20,6 +22,9 @@ function(stc_batches result)
     endif()
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE path)
     cmake_path(GET path PARENT_PATH folder)
+    if(DEFINED STC_BATCH_FOLDER)
+      set(folder ${STC_BATCH_FOLDER})
+    endif()
     set(kind fast)
     if(source IN_LIST STC_SMALL)
       set(kind small)

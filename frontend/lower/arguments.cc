@@ -1,7 +1,7 @@
 // Arguments of POUs: which goes to which parameter.
 #include "frontend/lower/arguments.h"
-#include "frontend/sema/calls.h"
-#include "frontend/sema/objects.h"
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 

@@ -6,7 +6,7 @@
 #include "frontend/lower/method_code.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/targets.h"
-#include "frontend/sema/constants.h"
+#include "frontend/sema/constants/constants.h"
 
 namespace frontend {
 

@@ -8,9 +8,9 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/standard_code.h"
 #include "frontend/lower/test_code.h"
-#include "frontend/sema/calls.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/standard_calls.h"
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/calls/standard_calls.h"
+#include "frontend/sema/constants/constants.h"
 
 namespace frontend {
 namespace {

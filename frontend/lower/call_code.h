@@ -1,5 +1,5 @@
 // Phase: calls, as values, as places and as statements, with EN and ENO around them (call.cc).
-// It asks sema what is called (sema/calls.h), notes the callee (PouInfo::callees), and
+// It asks sema what is called (sema/calls/calls.h), notes the callee (PouInfo::callees), and
 // leaves the rest to arguments, methods, standard functions and tests.
 #pragma once
 

@@ -5,8 +5,8 @@
 
 #include "frontend/lower/case_code.h"
 #include "frontend/lower/statements.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 

@@ -2,7 +2,7 @@
 #include "frontend/lower/places.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/constants.h"
+#include "frontend/sema/constants/constants.h"
 
 namespace frontend {
 

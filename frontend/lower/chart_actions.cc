@@ -2,7 +2,7 @@
 // and their statements.
 #include "frontend/lower/chart.h"
 #include "frontend/lower/statements.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/declarations/variables.h"
 
 namespace frontend {
 namespace {

@@ -2,7 +2,7 @@
 // evaluator runs. So there is one definition of what each standard function does.
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/expressions/width.h"
 #include "ir/program/evaluate.h"
 
 namespace frontend {

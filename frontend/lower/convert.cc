@@ -4,8 +4,8 @@
 #include "frontend/lower/conversions.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/value_code.h"
-#include "frontend/sema/calls.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/expressions/width.h"
 #include "ir/types/time_units.h"
 
 namespace frontend {

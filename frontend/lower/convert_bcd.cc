@@ -1,7 +1,7 @@
 // Binary coded decimals (IEC 61131-3 table 24). A digit above 9, and a number that the
 // target cannot hold, trap: no result would be right.
 #include "frontend/lower/value_code.h"
-#include "frontend/sema/constant.h"
+#include "frontend/sema/constants/constant.h"
 
 namespace frontend {
 

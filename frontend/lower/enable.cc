@@ -4,7 +4,7 @@
 // connected. Who declares parameters of these names has them.
 #include "frontend/lower/enable.h"
 #include "frontend/lower/try_code.h"
-#include "frontend/sema/calls.h"
+#include "frontend/sema/calls/calls.h"
 
 namespace frontend {
 

@@ -3,7 +3,7 @@
 // variable is last + step, except at the type's limit, where it stays.
 #include "frontend/lower/for_code.h"
 #include "frontend/lower/statements.h"
-#include "frontend/sema/constants.h"
+#include "frontend/sema/constants/constants.h"
 
 namespace frontend {
 

@@ -2,7 +2,7 @@
 // inside; nothing jumps into a block.
 #include "frontend/lower/statements.h"
 #include "frontend/lower/try_code.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/declarations/variables.h"
 
 namespace frontend {
 

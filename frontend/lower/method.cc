@@ -5,8 +5,8 @@
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/method_code.h"
 #include "frontend/lower/references.h"
-#include "frontend/sema/calls.h"
-#include "frontend/sema/objects.h"
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 

@@ -2,8 +2,8 @@
 #include "frontend/lower/arguments.h"
 #include "frontend/lower/assignments.h"
 #include "frontend/lower/mock_code.h"
-#include "frontend/sema/test_build.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/declarations/variables.h"
+#include "frontend/sema/tests/test_build.h"
 
 namespace frontend {
 namespace {

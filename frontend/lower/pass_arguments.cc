@@ -5,7 +5,7 @@
 #include "frontend/lower/places.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/write_checks.h"
-#include "frontend/sema/constants.h"
+#include "frontend/sema/constants/constants.h"
 
 namespace frontend {
 

@@ -8,12 +8,12 @@
 #include "frontend/lower/places.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/common_uses.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/objects.h"
-#include "frontend/sema/shared_addresses.h"
-#include "frontend/sema/variables.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/configuration/common_uses.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/declarations/shared_addresses.h"
+#include "frontend/sema/declarations/variables.h"
+#include "frontend/sema/expressions/width.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 

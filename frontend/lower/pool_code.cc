@@ -1,8 +1,8 @@
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/write_checks.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/objects.h"
-#include "frontend/sema/pools.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/objects/objects.h"
+#include "frontend/sema/objects/pools.h"
 
 namespace frontend {
 namespace {

@@ -1,4 +1,5 @@
-// __NEW and __DELETE, and the methods __RESET and __LEAVE of what lies in pools (sema/pools.h).
+// __NEW and __DELETE, and the methods __RESET and __LEAVE of what lies in pools
+// (sema/objects/pools.h).
 #pragma once
 
 #include "frontend/lower/start_code.h"

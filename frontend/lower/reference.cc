@@ -4,10 +4,10 @@
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/value_code.h"
-#include "frontend/sema/calls.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/operator_types.h"
-#include "frontend/sema/operators.h"
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/expressions/operator_types.h"
+#include "frontend/sema/expressions/operators.h"
 
 namespace frontend {
 namespace {

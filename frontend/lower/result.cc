@@ -2,7 +2,7 @@
 // local that every way there assigns.
 #include "frontend/lower/assignments.h"
 #include "frontend/lower/current_results.h"
-#include "frontend/sema/expressions.h"
+#include "frontend/sema/expressions/expressions.h"
 
 namespace frontend {
 

@@ -4,10 +4,10 @@
 #include "frontend/lower/standard_code.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/operator_types.h"
-#include "frontend/sema/operators.h"
-#include "frontend/sema/standard_calls.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/calls/standard_calls.h"
+#include "frontend/sema/expressions/operator_types.h"
+#include "frontend/sema/expressions/operators.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 namespace {

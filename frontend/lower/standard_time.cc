@@ -3,7 +3,7 @@
 
 #include "frontend/lower/standard_code.h"
 #include "frontend/lower/value_code.h"
-#include "frontend/sema/standard_calls.h"
+#include "frontend/sema/calls/standard_calls.h"
 
 namespace frontend {
 namespace {

@@ -1,8 +1,8 @@
 #include "frontend/lower/arguments.h"
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/start_code.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/objects.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/objects/objects.h"
 #include "ir/types/stamps.h"
 
 namespace frontend {

@@ -1,6 +1,6 @@
-// The code of __START (sema/start.cc): FB_Init of every new instance, inner ones first, with the
-// arguments that its declaration gives; FB_Exit of those that leave, FB_Reinit of those whose type
-// a change has changed. Which is which, their stamps say (ir/types/stamps.h).
+// The code of __START (sema/objects/start.cc): FB_Init of every new instance, inner ones first,
+// with the arguments that its declaration gives; FB_Exit of those that leave, FB_Reinit of those
+// whose type a change has changed. Which is which, their stamps say (ir/types/stamps.h).
 #pragma once
 
 #include <functional>

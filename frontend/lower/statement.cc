@@ -8,7 +8,7 @@
 #include "frontend/lower/statements.h"
 #include "frontend/lower/try_code.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/constants.h"
+#include "frontend/sema/constants/constants.h"
 
 namespace frontend {
 

@@ -4,10 +4,10 @@
 
 #include "frontend/lower/conversions.h"
 #include "frontend/lower/value_code.h"
-#include "frontend/sema/calls.h"
-#include "frontend/sema/operators.h"
-#include "frontend/sema/standard_calls.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/calls/standard_calls.h"
+#include "frontend/sema/expressions/operators.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 namespace {

@@ -3,7 +3,7 @@
 #include "frontend/lower/places.h"
 #include "frontend/lower/targets.h"
 #include "frontend/lower/write_checks.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/declarations/variables.h"
 
 namespace frontend {
 

@@ -4,10 +4,10 @@
 #include "frontend/lower/mock_code.h"
 #include "frontend/lower/test_code.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/operator_types.h"
-#include "frontend/sema/operators.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/expressions/operator_types.h"
+#include "frontend/sema/expressions/operators.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 namespace {

@@ -7,9 +7,9 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/operand_warnings.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/declarations/variables.h"
+#include "frontend/sema/expressions/operand_warnings.h"
 
 namespace frontend {
 

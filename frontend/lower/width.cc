@@ -2,11 +2,11 @@
 // computed as DINT. Where only their low bits are wanted, because they are stored in a small
 // variable, `+`, `-`, `*` and the bitwise operators give the same bits in its type, so the code is
 // that of an operation in that type.
+#include "frontend/sema/expressions/width.h"
 #include "frontend/lower/conversions.h"
 #include "frontend/lower/values.h"
-#include "frontend/sema/constants.h"
-#include "frontend/sema/operators.h"
-#include "frontend/sema/width.h"
+#include "frontend/sema/constants/constants.h"
+#include "frontend/sema/expressions/operators.h"
 
 namespace frontend {
 namespace {

@@ -3,9 +3,9 @@
 
 #include "frontend/lower/places.h"
 #include "frontend/lower/write_checks.h"
-#include "frontend/sema/common_uses.h"
-#include "frontend/sema/objects.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/configuration/common_uses.h"
+#include "frontend/sema/declarations/variables.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 namespace {

@@ -1,7 +1,7 @@
 // What names in code mean.
 #include "frontend/questions/indexer.h"
-#include "frontend/sema/objects.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/declarations/variables.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend::questions {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "frontend/questions/indexer.h"
-#include "frontend/sema/objects.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend::questions {
 

@@ -2,7 +2,7 @@
 
 #include "frontend/parse/section_word.h"
 #include "frontend/questions/walk.h"
-#include "frontend/sema/objects.h"
+#include "frontend/sema/objects/objects.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend::questions {

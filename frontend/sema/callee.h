@@ -1,10 +1,10 @@
 // What a call expression calls, and which argument is for which parameter.
 #pragma once
 
-#include "frontend/sema/conversion.h"
+#include "frontend/sema/expressions/reference_calls.h"
 #include "frontend/sema/model.h"
-#include "frontend/sema/reference_calls.h"
-#include "frontend/sema/test_calls.h"
+#include "frontend/sema/tests/test_calls.h"
+#include "frontend/sema/types/conversion.h"
 #include "stdlib/registry.h"
 
 namespace frontend {

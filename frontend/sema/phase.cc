@@ -1,7 +1,7 @@
 #include "frontend/sema/phase.h"
 
-#include "frontend/sema/expressions.h"
-#include "frontend/sema/variables.h"
+#include "frontend/sema/declarations/variables.h"
+#include "frontend/sema/expressions/expressions.h"
 
 namespace frontend {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "frontend/sema/conversion.h"
+#include "frontend/sema/types/conversion.h"
 
 namespace frontend {
 

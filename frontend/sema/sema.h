@@ -11,12 +11,12 @@
 #include "base/diagnostics.h"
 #include "base/source.h"
 #include "frontend/compile.h"
-#include "frontend/sema/constant.h"
+#include "frontend/sema/constants/constant.h"
+#include "frontend/sema/constants/start_values.h"
 #include "frontend/sema/declarations.h"
+#include "frontend/sema/declarations/namespaces.h"
 #include "frontend/sema/facts.h"
-#include "frontend/sema/namespaces.h"
 #include "frontend/sema/reporter.h"
-#include "frontend/sema/start_values.h"
 #include "ir/types/layout.h"
 
 namespace frontend {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "frontend/sema/conversion.h"
+#include "frontend/sema/types/conversion.h"
 #include "tests/differential/builder.h"
 
 namespace differential {

@@ -15,7 +15,7 @@ std::string scope_prefix(const frontend::Tree& tree, frontend::ScopeId scope) {
   return out;
 }
 
-// As sema names the list of a block (frontend/sema/global_lists.cc).
+// As sema names the list of a block (frontend/sema/declarations/global_lists.cc).
 std::string list_prefix(const Project& project, const frontend::Tree& tree,
                         const frontend::VarBlock& block) {
   const frontend::Attribute* named = tree.find_attribute(block.attributes, "list");

@@ -1,6 +1,6 @@
 #include "tools/stc/test_page.h"
 
-#include "frontend/sema/test_calls.h"
+#include "frontend/sema/tests/test_calls.h"
 
 namespace stc {
 namespace {

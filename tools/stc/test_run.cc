@@ -12,7 +12,7 @@
 namespace stc {
 namespace {
 
-// The program that constructs instances (frontend/sema/start.cc), where there is one.
+// The program that constructs instances (frontend/sema/objects/start.cc), where there is one.
 constexpr const char* kStart = "__START";
 
 uint32_t instance_of(const ir::Image& image, const std::string& name) {

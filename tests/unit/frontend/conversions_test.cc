@@ -2,7 +2,7 @@
 // default value, or is refused with one message.
 #include <gtest/gtest.h>
 
-#include "frontend/sema/conversion.h"
+#include "frontend/sema/types/conversion.h"
 #include "tests/unit/frontend/harness.h"
 
 namespace frontend_test {

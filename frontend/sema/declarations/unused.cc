@@ -1,0 +1,62 @@
+// What is declared and never used, or never written.
+#include "frontend/sema/declarations/unused.h"
+
+#include "frontend/sema/phase.h"
+
+namespace frontend {
+namespace {
+
+// Covers functions and methods; a prototype has no body that could assign.
+void report_unassigned_results(const Phase& phase) {
+  for (const PouInfo& pou : phase.sema().declared.pous) {
+    if (pou.library || pou.open || pou.made != MadeCode::kNone || !pou.result.valid()) continue;
+    const PouKind kind = pou.decl->kind;
+    if (kind != PouKind::kFunction && kind != PouKind::kMethod) continue;
+    const bool prototype =
+        pou.owner != kNoPou &&
+        (pou.decl->is_abstract ||
+         phase.sema().declared.pous[pou.owner].decl->kind == PouKind::kInterface);
+    if (prototype || phase.resolve(pou.result).written) continue;
+    phase.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
+                  "`" + std::string(pou.decl->name.text) + "` never assigns its result",
+                  "assign it: `" + std::string(pou.decl->name.text) + " := ...`");
+  }
+}
+
+}  // namespace
+
+// After errors much is unused that will not stay so.
+void report_unused(const Phase& phase) {
+  // Values that stay what their type begins with. Retained ones may come from somewhere.
+  auto never_written = [&phase](const Variable& variable) {
+    return !variable.written && !variable.constant && !variable.retain && !variable.hidden &&
+           !variable.decl->init.valid() && variable.type.valid() &&
+           phase.sema().program.types.is_scalar(variable.type) &&
+           !phase.sema().program.types.is_reference(variable.type) &&
+           !phase.sema().program.types[variable.type].init.valid();
+  };
+  if (phase.sema().report.has_hard_errors()) return;
+  report_unassigned_results(phase);
+  for (const Variable& variable : phase.sema().declared.variables) {
+    bool private_section = variable.section == VarSection::kLocal ||
+                           variable.section == VarSection::kTemp ||
+                           variable.section == VarSection::kStatic;
+    if (variable.access == Access::kPublic) continue;  // as an output
+    if (!private_section || variable.decl == nullptr) continue;
+    if (variable.decl->has_address || variable.decl->implied) continue;
+    if (variable.pou != kNoPou && phase.sema().declared.pous[variable.pou].open) continue;
+    if (variable.used) {
+      if (never_written(variable)) {
+        phase.warning(
+            DiagnosticCode::kNeverWritten, variable.name.span,
+            "`" + std::string(variable.name.text) + "` is read, but nothing here writes it",
+            "give it an initial value, if that is what it is for");
+      }
+      continue;
+    }
+    phase.warning(DiagnosticCode::kUnusedVariable, variable.name.span,
+                  "`" + std::string(variable.name.text) + "` is never used");
+  }
+}
+
+}  // namespace frontend

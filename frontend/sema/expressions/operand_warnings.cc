@@ -1,0 +1,125 @@
+#include "frontend/sema/expressions/operand_warnings.h"
+#include "frontend/sema/constants/constants.h"
+
+#include <algorithm>
+
+#include "frontend/sema/expressions/operators.h"
+
+namespace frontend {
+
+namespace {
+
+// How many traps of one operand are kept; an operand with more is warned of as a whole, so that
+// long chains cost no square.
+constexpr size_t kMostTraps = 64;
+
+// As written, but for blanks and case; "" for what stands in no source.
+std::string text_of(const Sema& sema, ExprId id) {
+  const base::SourceSpan span = sema.tree[id].span;
+  const uint32_t file = sema.sources.file_of(span.begin);
+  if (file == sema.sources.file_count()) return {};
+  std::string out(sema.sources.text(file).substr(
+      span.begin.offset - sema.sources.begin(file).offset, span.end.offset - span.begin.offset));
+  std::erase_if(out, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+  return ir::fold_name(out);
+}
+
+// Texts of the parts of `id` that can trap and are evaluated whenever it is. False where not all
+// of them are found.
+bool find_traps(const Phase& phase, ExprId id, std::vector<std::string>& out) {
+  for (;;) {
+    const Expr& expr = phase.sema().tree[id];
+    const Note& note = phase.infer(id);
+    if (!note.can_trap) return true;
+    if (note.calls || out.size() == kMostTraps) return false;
+    switch (expr.kind) {
+      case ExprKind::kDeref:
+      case ExprKind::kMember:
+      case ExprKind::kIndex:
+        out.push_back(text_of(phase.sema(), id));
+        return !out.back().empty();
+      case ExprKind::kUnary:
+        break;
+      case ExprKind::kBinary: {
+        const bool lazy = expr.binary == BinaryOp::kAndThen || expr.binary == BinaryOp::kOrElse;
+        const bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
+        if (divides || (!lazy && !find_traps(phase, expr.right, out))) return false;
+        if (lazy && phase.infer(expr.right).can_trap) return false;
+        break;
+      }
+      default:
+        return false;
+    }
+    id = expr.operand;  // a loop: chains of operators are long on this side
+  }
+}
+
+}  // namespace
+
+void check_right_operand(const Phase& phase, const Expr& expr) {
+  std::vector<std::string> traps;
+  std::vector<std::string> before;
+  const bool all_known = find_traps(phase, expr.right, traps);
+  find_traps(phase, expr.operand, before);
+  const bool done = std::all_of(traps.begin(), traps.end(), [&](const std::string& trap) {
+    return std::find(before.begin(), before.end(), trap) != before.end();
+  });
+  if (all_known && done) return;
+  const bool drawn = expr.op == expr.span.begin;  // between contacts in a row
+  const bool conjunction = expr.binary == BinaryOp::kAnd;
+  phase.warning(DiagnosticCode::kRightOperandTraps, phase.sema().tree[expr.right].span,
+                drawn ? std::string("this contact is evaluated without power, too, and can trap")
+                      : "the right operand of " + std::string(operator_text(expr.binary)) +
+                            " is evaluated in any case and can trap",
+                drawn              ? "compute it in a box with EN, or jump over the rung"
+                : expr.instruction ? "jump over it with JMPCN"
+                : conjunction      ? "use AND_THEN"
+                                   : "use OR_ELSE");
+}
+
+void check_divisor(const Phase& phase, ExprId divisor, bool whole) {
+  const auto value = phase.ask<Constants>().fold(divisor, {});
+  if (!value || value->integer != 0 || value->real != 0) return;
+  // A constant that has a name may be another one some day, and be asked before.
+  if (whole && phase.sema().tree[divisor].kind == ExprKind::kLiteral) {
+    phase.error(DiagnosticCode::kConstantDivision, phase.sema().tree[divisor].span,
+                "the divisor is 0", "divide by something else; this would trap in every scan");
+    return;
+  }
+  phase.warning(DiagnosticCode::kZeroDivisor, phase.sema().tree[divisor].span,
+                "the divisor is always 0", "divide only where it is not 0: IF n <> 0 THEN ...");
+}
+
+// Zero is exact, and comparing with it is how divisors are tested.
+void check_real_equality(const Phase& phase, const Expr& expr) {
+  if (expr.binary != BinaryOp::kEq && expr.binary != BinaryOp::kNe) return;
+  bool real = false;
+  bool constant = true;
+  for (ExprId side : {expr.operand, expr.right}) {
+    const Note& note = phase.infer(side);
+    constant = constant && note.constant;
+    const bool fixed = note.flex == Flex::kNone;
+    real = real || (traits_of(phase.sema().program.types, note.type).real && fixed);
+    if (!note.constant || !note.type.valid()) continue;
+    const Expr& literal = phase.sema().tree[side];
+    if (literal.kind != ExprKind::kLiteral) continue;
+    const Literal& value = phase.sema().tree.literals[literal.number];
+    if (value.integer == 0 && value.real == 0) return;
+  }
+  if (!real || constant) return;
+  phase.warning(DiagnosticCode::kRealEquality, expr.span,
+                "reals are compared with " + std::string(operator_text(expr.binary)),
+                "compare the distance: ABS(a - b) < limit");
+}
+
+void check_wrapped(const Phase& phase, ExprId operand, std::string_view used) {
+  const Note& note = phase.infer(operand);
+  if (note.width != Width::kWraps || note.constant) return;
+  phase.warning(
+      DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
+      "the result is cut to `" + phase.sema().report.type_text(note.type) + "` before it is " +
+          std::string(used),
+      "convert an operand, so that the operator has the width that is needed: TO_DINT(a)");
+}
+
+}  // namespace frontend

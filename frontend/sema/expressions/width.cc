@@ -1,0 +1,135 @@
+#include "frontend/sema/expressions/width.h"
+
+#include <algorithm>
+
+namespace frontend {
+
+bool is_small(const Sema& sema, const Note& note) {
+  if (note.flex != Flex::kNone || !note.type.valid()) return false;
+  const ir::TypeTable& types = sema.program.types;
+  const Traits traits = traits_of(types, note.type);
+  return (traits.integer || traits.bits) && ir::scalar_size(types.scalar(note.type)) < 4;
+}
+
+Width width_of(const Sema& sema, const Note& note, bool can_grow) {
+  if (!is_small(sema, note)) return Width::kOwn;
+  if (sema.options.dialect != Dialect::kIec) return Width::kWide;
+  return can_grow ? Width::kWraps : Width::kOwn;
+}
+
+ir::TypeId computed_type(const Sema& sema, const Note& note) {
+  if (note.width != Width::kWide) return note.type;
+  return sema.program.types.elementary(ir::Kind::kDint);
+}
+
+Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& left,
+                    const Note& right) {
+  if (note.width != Width::kWide || left.width == Width::kWide || right.width == Width::kWide) {
+    return note;
+  }
+  // A literal has its sign outside.
+  const bool positive = sema.tree[expr.right].kind == ExprKind::kLiteral;
+  const bool fits = expr.binary == BinaryOp::kMod || positive ||
+                    !ir::is_signed(sema.program.types.scalar(note.type));
+  if (fits) note.width = Width::kOwn;
+  return note;
+}
+
+Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
+                     const std::vector<ExprId>& args, const Note& note, bool typed) {
+  using stdlib::FunctionRule;
+  if (typed) return Width::kOwn;  // MAX_INT
+  switch (row.rule) {
+    case FunctionRule::kArithmetic:
+    case FunctionRule::kBitwise:
+      return note.width;
+    case FunctionRule::kNumberSame:
+      return width_of(phase.sema(), note, false);
+    case FunctionRule::kMove:
+    case FunctionRule::kSelect:
+    case FunctionRule::kMux:
+    case FunctionRule::kExtreme:
+      return is_small(phase.sema(), note) && has_wide(phase, args) ? Width::kWide : Width::kOwn;
+    case FunctionRule::kReal:
+    case FunctionRule::kTrunc:
+    case FunctionRule::kShift:
+    case FunctionRule::kNot:
+    case FunctionRule::kCompare:
+    case FunctionRule::kString:
+    case FunctionRule::kStringNumber:
+    case FunctionRule::kClock:
+    case FunctionRule::kTimeSum:
+    case FunctionRule::kTimeDifference:
+    case FunctionRule::kTimeProduct:
+    case FunctionRule::kTimeQuotient:
+    case FunctionRule::kMoment:
+    case FunctionRule::kSplit:
+    case FunctionRule::kWeekday:
+    case FunctionRule::kByteOrder:
+    case FunctionRule::kValid:
+      return Width::kOwn;
+  }
+  return Width::kOwn;
+}
+
+bool has_wide(const Phase& phase, const std::vector<ExprId>& operands) {
+  return std::any_of(operands.begin(), operands.end(),
+                     [&](ExprId id) { return phase.infer(id).width == Width::kWide; });
+}
+
+ir::TypeId compared_type(const Phase& phase, ir::TypeId common,
+                         const std::vector<ExprId>& operands) {
+  Note meeting;
+  meeting.type = common;
+  const bool wide = is_small(phase.sema(), meeting) && has_wide(phase, operands);
+  return wide ? phase.sema().program.types.elementary(ir::Kind::kDint) : common;
+}
+
+Note widened_by(const Sema& sema, Note note, ExprId operand) {
+  const Expr& expr = sema.tree[operand];
+  if (note.width != Width::kWide || expr.kind != ExprKind::kLiteral) return note;
+  const Literal& literal = sema.tree.literals[expr.number];
+  if (literal.kind != LiteralKind::kInteger || literal.prefix != kNoNumber) return note;
+  const ir::TypeTable& types = sema.program.types;
+  const auto value = static_cast<Wide>(literal.integer);
+  if (value <= limits_of(types.scalar(note.type)).high) return note;
+  const Wide dint = limits_of(ir::Scalar::kI32).high;
+  const Wide lint = limits_of(ir::Scalar::kI64).high;
+  note.type = types.elementary(value <= dint   ? ir::Kind::kDint
+                               : value <= lint ? ir::Kind::kLint
+                                               : ir::Kind::kUlint);
+  note.width = Width::kOwn;
+  return note;
+}
+
+bool wraps_outside(const Sema& sema, const Note& note, const Expr& index, const Note& left,
+                   Limits bounds) {
+  const bool sum = index.kind == ExprKind::kBinary && note.width == Width::kWide &&
+                   (index.binary == BinaryOp::kAdd || index.binary == BinaryOp::kSub);
+  const ir::TypeTable& types = sema.program.types;
+  if (!sum || left.width == Width::kWide || left.flex != Flex::kNone ||
+      without_range(types, left.type) != note.type) {
+    return false;
+  }
+  const Expr& right = sema.tree[index.right];
+  if (right.kind != ExprKind::kLiteral) return false;
+  const Literal& literal = sema.tree.literals[right.number];
+  if (literal.kind != LiteralKind::kInteger || literal.prefix != kNoNumber) return false;
+  const Limits own = limits_of(types.scalar(note.type));
+  const auto by = static_cast<Wide>(literal.integer);
+  return index.binary == BinaryOp::kAdd ? own.low + by <= bounds.low : own.high - by >= bounds.high;
+}
+
+std::optional<uint64_t> cut_to(const Sema& sema, const Constant& value, const Note& note,
+                               ir::TypeId target) {
+  const ir::TypeTable& types = sema.program.types;
+  if (note.width != Width::kWide || value.form != Constant::Form::kInteger) return std::nullopt;
+  if (types[target].kind == ir::Kind::kSubrange) return std::nullopt;
+  const Traits to = traits_of(types, target);
+  const bool fits = (to.integer || to.bits) &&
+                    implicit_fit(types, note.type, target, sema.options.dialect) != Fit::kNone;
+  if (!fits) return std::nullopt;
+  return static_cast<uint64_t>(wrap_to(types.scalar(target), value.integer));
+}
+
+}  // namespace frontend
