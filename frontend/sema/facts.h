@@ -32,8 +32,6 @@ class Facts {
   std::vector<SpecInfo> specs;
 
   uint32_t depth = 0;  // of what is being resolved
-  // What is initialised now may hold an unbound handle.
-  bool binds_at_start = false;
 
  private:
   const Tree& tree_;

@@ -6,6 +6,10 @@
 
 namespace frontend {
 
+// Whether a reference in an initial value may stand for an expression that no constant is: start
+// code then binds it (start_values.h).
+enum class Bound : uint8_t { kNow, kAtStart };
+
 class Constants : public Phase {
  public:
   using Phase::Phase;
@@ -22,7 +26,7 @@ class Constants : public Phase {
   // Initial value of any type; invalid when reported. What a list leaves out keeps its
   // value in `otherwise`, the default of the declared type.
   ir::ConstId initial_value(ExprId expr, ir::TypeId type, ir::ConstId otherwise,
-                            Known least = Known::kInitially);
+                            Known least = Known::kInitially, Bound bound = Bound::kNow);
   // What an initial value says of one element or member; invalid: nothing.
   ir::ConstId listed(ir::ConstId list, uint64_t index) const;
   // The initial value of a variable, or of a part of one, with `known` above kNo.

@@ -12,8 +12,8 @@ namespace frontend {
 // place: what a list leaves out keeps it.
 class InitialBuilder : private Phase {
  public:
-  InitialBuilder(Sema& sema, const PouScope& scope, Known least)
-      : Phase(sema, scope), least_(least) {}
+  InitialBuilder(Sema& sema, const PouScope& scope, Known least, Bound bound)
+      : Phase(sema, scope), least_(least), bound_(bound) {}
   ir::ConstId value(ExprId id, ir::TypeId type, ir::ConstId otherwise);
 
  private:
@@ -45,6 +45,7 @@ class InitialBuilder : private Phase {
                std::vector<ir::ConstElement>& elements);
 
   Known least_;
+  Bound bound_;
 };
 
 ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherwise) {
@@ -56,7 +57,7 @@ ir::ConstId InitialBuilder::value(ExprId id, ir::TypeId type, ir::ConstId otherw
     return array(expr, type, otherwise);
   }
   if (expr.kind == ExprKind::kStructInit && members) return structure(expr, type, otherwise);
-  if (types.is_reference(type) && sema_.facts.binds_at_start) {
+  if (types.is_reference(type) && bound_ == Bound::kAtStart) {
     const Note& note = infer(id);
     if (note.type.valid() && !note.constant) return sema_.start_values.add(scope_, id);
   }
@@ -261,9 +262,9 @@ ir::ConstId InitialBuilder::structure(const Expr& expr, ir::TypeId type, ir::Con
   return sema_.program.constants.add(std::move(value));
 }
 
-ir::ConstId Constants::initial_value(ExprId id, ir::TypeId type, ir::ConstId otherwise,
-                                     Known least) {
-  return InitialBuilder(sema_, scope_, least).value(id, type, otherwise);
+ir::ConstId Constants::initial_value(ExprId id, ir::TypeId type, ir::ConstId otherwise, Known least,
+                                     Bound bound) {
+  return InitialBuilder(sema_, scope_, least, bound).value(id, type, otherwise);
 }
 
 }  // namespace frontend

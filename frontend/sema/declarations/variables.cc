@@ -1,9 +1,8 @@
 // Variables and members: what a name means, its type and its initial value.
-#include <utility>
 
+#include "frontend/sema/declarations/variables.h"
 #include "frontend/parse/il_operators.h"
 #include "frontend/sema/constants/constants.h"
-#include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
@@ -122,10 +121,9 @@ void Variables::resolve_initial(Variable& variable) {
   }
   const bool parameter = variable.storage == Storage::kLocal &&
                          (variable.section == VarSection::kInput || variable.constant);
-  const bool saved = std::exchange(sema_.facts.binds_at_start, !variable.constant && !parameter);
+  const Bound bound = variable.constant || parameter ? Bound::kNow : Bound::kAtStart;
   const Known least = at_call && variable.constant ? Known::kByCall : Known::kInitially;
-  variable.init = ask<Constants>().initial_value(init, variable.type, variable.init, least);
-  sema_.facts.binds_at_start = saved;
+  variable.init = ask<Constants>().initial_value(init, variable.type, variable.init, least, bound);
 }
 
 void Variables::check_placement(const Variable& variable) {

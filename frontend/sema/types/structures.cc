@@ -137,10 +137,12 @@ bool Types::add_field(StructBuild& build, const VarDecl& field) {
   ir::Member member;
   member.type = use.type;
   ask<Variables>().check_binding(field, use.type);
-  const bool saved = std::exchange(sema_.facts.binds_at_start, !build.type.overlap);
-  member.init = field.init.valid() ? ask<Constants>().initial_value(field.init, use.type, use.init)
-                                   : use.init;
-  sema_.facts.binds_at_start = saved;
+  const Bound bound = build.type.overlap ? Bound::kNow : Bound::kAtStart;
+  member.init = use.init;
+  if (field.init.valid()) {
+    member.init =
+        ask<Constants>().initial_value(field.init, use.type, use.init, Known::kInitially, bound);
+  }
   if (!bit) close_bits(build);
   if (field.has_address) {
     member.address = field.address;
