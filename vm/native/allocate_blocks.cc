@@ -188,8 +188,8 @@ void Allocator::choose_for_loop(Block block, Snapshot& state) {
 
 // The variable whose memory holds a parameter on every way here; kNone: none does.
 uint32_t Allocator::home_of_parameter(Val p, const Snapshot& state) const {
-  if (f_.values[p].bits == 0) return kNone;
-  const auto home = static_cast<uint32_t>(f_.values[p].bits - 1);
+  const uint32_t home = f_.values[p].home;
+  if (home == kNone) return kNone;
   const bool taken =
       std::any_of(state.begin(), state.end(), [&](const Held& held) { return held.home == home; });
   return taken ? kNone : home;

@@ -178,7 +178,7 @@ void Builder::merge(Block block) {
     if (one == kNone) {
       make_parameter(block, v);
       const bool right = dirty == 0 && !f_.variables[v].slot && !f_.variables[v].deferred;
-      if (right) f_.values[now_.value[v]].bits = uint64_t{v} + 1;
+      if (right) f_.values[now_.value[v]].home = v;
       now_.dirty[v] |= dirty;
       continue;
     }

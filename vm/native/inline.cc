@@ -136,7 +136,7 @@ class Inliner {
       value_of_[v] = static_cast<Val>(f_.values.size());
       f_.values.push_back(g.values[v]);
       f_.values.back().node = kNone;
-      if (!g.values[v].constant) f_.values.back().bits = 0;  // a variable of the body's own
+      f_.values.back().home = kNone;  // a variable of the body's own
     }
     const auto exits = static_cast<uint32_t>(f_.exits.size());
     for (const Exit& exit : g.exits) {

@@ -151,9 +151,10 @@ struct Value {
   bool floating = false;
   uint8_t width = 0;
   bool constant = false;
-  uint64_t bits = 0;      // of a constant; of a parameter 1 + the variable that holds it, too, or 0
+  uint64_t bits = 0;      // of a constant
   uint32_t node = kNone;  // that makes it; kNone: a block parameter
   Block block = 0;
+  uint32_t home = kNone;  // of a parameter: the variable that holds it on every way there, too
 };
 
 // Variables that are dirty, and what they hold there.
