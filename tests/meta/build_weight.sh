@@ -5,7 +5,7 @@
 set -eu
 source=$1
 build=$2
-most=572000  # lines; where it comes down, so does this
+most=565000  # lines; where it comes down, so does this
 
 # Only the build that people make first: others have other units.
 [ -f "$build/.ninja_deps" ] && command -v ninja >/dev/null || exit 0
