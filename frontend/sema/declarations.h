@@ -26,6 +26,8 @@ struct Declarations {
   const StructureField* find_field(ir::TypeId structure, std::string_view name) const;
   // The number of a member that is no BIT; -1: there is none.
   int32_t find_member(ir::TypeId structure, std::string_view name) const;
+  // The number of a literal of an enumeration; -1: there is none.
+  int32_t find_literal(ir::TypeId enumeration, std::string_view name) const;
   // Keeps a name that no source has.
   std::string_view keep_name(std::string name);
 
@@ -45,6 +47,7 @@ struct Declarations {
 
   std::unordered_map<ir::TypeId, uint32_t> pou_by_type;
   std::unordered_map<ir::TypeId, NameMap<StructureField>> structures;
+  std::unordered_map<ir::TypeId, NameMap<uint32_t>> enumerations;  // the numbers of their literals
   // Instances of functions with open parameters: by function and types.
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances;
 

@@ -32,6 +32,13 @@ int32_t Declarations::find_member(ir::TypeId structure, std::string_view name) c
   return field == nullptr || field->bit >= 0 ? -1 : static_cast<int32_t>(field->member);
 }
 
+int32_t Declarations::find_literal(ir::TypeId enumeration, std::string_view name) const {
+  const auto table = enumerations.find(enumeration);
+  if (table == enumerations.end()) return -1;
+  const auto found = table->second.find(name);
+  return found == table->second.end() ? -1 : static_cast<int32_t>(found->second);
+}
+
 std::string_view Declarations::keep_name(std::string name) {
   return made_names.emplace_back(std::move(name));
 }

@@ -179,8 +179,9 @@ std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
 
 std::optional<Constant> Folder::enumerator(ir::TypeId type, const Expr& name) {
   ir::TypeId root = without_range(sema_.program.types, type);
-  for (const ir::EnumLiteral& literal : sema_.program.types[root].literals) {
-    if (!ir::same_name(literal.name, name.name.text)) continue;
+  if (const int32_t number = sema_.declared.find_literal(root, name.name.text); number >= 0) {
+    const ir::EnumLiteral& literal =
+        sema_.program.types[root].literals[static_cast<size_t>(number)];
     return of_bits(root, static_cast<uint64_t>(literal.value));
   }
   // Ambiguous name in the context of a third enumeration: any candidate will be refused.

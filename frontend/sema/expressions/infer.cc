@@ -291,14 +291,15 @@ Note Expressions::infer_literal_of(std::string_view name, base::SourceSpan span,
           "`" + std::string(name) + "` is not an enumeration", known ? "" : type.fix());
     return {};
   }
-  NearestName nearest(wanted.text);
-  for (const ir::EnumLiteral& literal : sema_.program.types[use->type].literals) {
-    nearest.offer(literal.name);
-    if (!ir::same_name(literal.name, wanted.text)) continue;
+  if (sema_.declared.find_literal(use->type, wanted.text) >= 0) {
     Note note;
     note.type = use->type;
     note.constant = true;
     return note;
+  }
+  NearestName nearest(wanted.text);
+  for (const ir::EnumLiteral& literal : sema_.program.types[use->type].literals) {
+    nearest.offer(literal.name);
   }
   error(DiagnosticCode::kNotEnumeration, wanted.span,
         "`" + sema_.report.type_text(use->type) + "` has no literal `" + std::string(wanted.text) +

@@ -233,11 +233,12 @@ TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {
   type.name = sema_.facts.of(scope_, id).name.text;
   type.base = without_range(sema_.program.types, base.type);
   Limits limits = limits_of(sema_.program.types.scalar(base.type));
-  NameMap<bool> names;
+  NameMap<uint32_t> numbers;
   Wide next = 0;
   for (const Enumerator& enumerator : spec.enumerators) {
     std::string name(enumerator.name.text);
-    if (!names.emplace(enumerator.name.text, true).second) {
+    const auto number = static_cast<uint32_t>(type.literals.size());
+    if (!numbers.emplace(enumerator.name.text, number).second) {
       error(DiagnosticCode::kDuplicateName, enumerator.name.span, "`" + name + "` stands twice");
       return {};
     }
@@ -260,7 +261,9 @@ TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {
   if (int64_t first = type.literals[0].value; first != 0) {
     type.init = sema_.program.constants.scalar(static_cast<uint64_t>(first));
   }
-  return {sema_.program.types.declare(std::move(type)), {}};
+  const ir::TypeId made = sema_.program.types.declare(std::move(type));
+  sema_.declared.enumerations[made] = std::move(numbers);
+  return {made, {}};
 }
 
 }  // namespace frontend
