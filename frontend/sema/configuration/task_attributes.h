@@ -2,7 +2,7 @@
 // front of RESOURCE, or of its CONFIGURATION: its schedule.
 #pragma once
 
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 

@@ -1,7 +1,7 @@
 // What operators may do, but is hardly meant: W0002, W0006, W0016, W0084; and E3012.
 #pragma once
 
-#include "frontend/sema/sema.h"
+#include "frontend/sema/phase.h"
 
 namespace frontend {
 

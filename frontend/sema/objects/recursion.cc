@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "base/limits.h"
-#include "frontend/sema/sema.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 namespace {
