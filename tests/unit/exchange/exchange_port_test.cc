@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "tests/unit/allocations.h"
+#include "tests/unit/locks.h"
 
 namespace vm {
 namespace {
@@ -75,6 +76,7 @@ TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
   port->use(set.get());
   ASSERT_TRUE(eventually([&] { return seen->exchanges > 0; }));
   const uint64_t before = tests::allocations();
+  const uint64_t locks_before = tests::locks();
   const int64_t begin = ExchangePort::now_ns();
   int fresh = 0;
   uint64_t rounds = 0;
@@ -85,6 +87,7 @@ TEST(ExchangePort, B8_TheControlSideNeitherWaitsNorAllocates) {
     port->use(set.get());
   }
   EXPECT_EQ(tests::allocations(), before);
+  EXPECT_EQ(tests::locks(), locks_before);
   EXPECT_EQ(fresh, 0);          // it hung all the time
   EXPECT_GT(rounds, 100'000u);  // and nobody waited for it
   seen->hang_ms = 0;

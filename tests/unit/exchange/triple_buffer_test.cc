@@ -23,6 +23,36 @@ TEST(TripleBuffer, GivesTheNewestOnce) {
   EXPECT_EQ(buffer.newest()[0], 2);
 }
 
+// Both sides in one thread, in every order of their steps: half a value is written, the other half
+// and published; the newest is taken. What the reader has is whole, and stays until it takes again.
+TEST(TripleBuffer, B8_NothingIsTornInAnyOrderOfSteps) {
+  constexpr uint32_t kSteps = 14;
+  for (uint32_t order = 0; order < 1u << kSteps; ++order) {
+    TripleBuffer buffer(2);
+    uint8_t written = 0;
+    uint8_t published = 0;
+    uint8_t taken = 0;
+    bool begun = false;
+    for (uint32_t step = 0; step < kSteps; ++step) {
+      if (((order >> step) & 1) == 0) {
+        const bool is_new = buffer.take();
+        ASSERT_EQ(is_new, published != taken) << order;
+        taken = published;
+      } else if (!begun) {
+        buffer.work()[0] = ++written;
+        begun = true;
+      } else {
+        buffer.work()[1] = written;
+        buffer.publish();
+        published = written;
+        begun = false;
+      }
+      ASSERT_EQ(buffer.newest()[0], taken) << order << " " << step;
+      ASSERT_EQ(buffer.newest()[1], taken) << order << " " << step;
+    }
+  }
+}
+
 TEST(TripleBuffer, B8_NothingIsTornBetweenThreads) {
   constexpr size_t kBytes = 256;
   constexpr int kRounds = 200'000;

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "tests/unit/io/rig.h"
+#include "tests/unit/locks.h"
 #include "vm/runtime/clocks.h"
 #include "vm/runtime/controller.h"
 #include "vm/runtime/event_ring.h"
@@ -297,8 +298,10 @@ TEST(DeviceIo, B8_NoReleaseIsMissedWhileADriverHangs) {
   auto controller = Controller::start(*image, {}, clock, io);
   ASSERT_TRUE(controller.ok());
   const auto is_ok = [&] { return *(*controller)->get("Main.ok") != "FALSE"; };
+  const uint64_t locks_before = tests::locks();
   while ((*controller)->cycles() < 20'000 || is_ok()) (*controller)->cycle();
   EXPECT_EQ((*controller)->missed_releases(), 0u);
+  EXPECT_EQ(tests::locks(), locks_before);
   release(hangs);
 }
 
