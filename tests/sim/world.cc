@@ -207,9 +207,11 @@ void World::change() {
   const uint32_t flags =
       (random_.one_in(3) ? 0u : vm::kAllowLoss) | (random_.one_in(2) ? vm::kAllowOverrun : 0u) |
       (random_.one_in(5) ? vm::kPermanent : 0u) | (random_.one_in(3) ? vm::kLastEditBoots : 0u);
-  // Until it is accepted, one that is permanent is on trial by its own policy.
+  // Until it is accepted, one that is permanent is on trial by its own policy, but loses no edit
+  // below it that boots.
   const bool permanent = (flags & vm::kPermanent) != 0;
-  const bool last_edit = (flags & vm::kLastEditBoots) != 0;
+  const bool last_edit =
+      (flags & vm::kLastEditBoots) != 0 || (permanent && hand.seen.last_edit_boots);
   if (!last_edit) may_boot_.push_back(hand.seen.boots_next);
   if (last_edit || permanent)
     may_boot_.push_back(ir::digest(online_change::decode(*package)->image));

@@ -121,6 +121,10 @@ base::Status ControllerService::store_trial(Trial& next) {
   base::Status follows = store_follows();
   if (follows.ok() && !store_.retained_fits()) follows = save_retained_now();
   if (!follows.ok()) return follows;
+  // One that is accepted at once is on trial until that is stored: a power cut in between loses no
+  // edit below it that boots.
+  const bool permanent = (next.switch_flags & vm::kPermanent) != 0;
+  if (permanent && last_edit_boots()) next.switch_flags |= vm::kLastEditBoots;
   const bool resumes = (next.switch_flags & vm::kLastEditBoots) != 0;
   if (resumes) {  // the values of the switch come after it; until then these are newer than others
     next.retained = empty_snapshot();
