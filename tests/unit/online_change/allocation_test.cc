@@ -30,7 +30,8 @@ void* allocate(size_t size) {
   return memory;
 }
 
-void release(void* memory) {
+// Not inlined, or the compiler takes malloc and delete for a mismatched pair.
+[[gnu::noinline]] void release(void* memory) {
   if (memory != nullptr) --live;
   std::free(memory);
 }

@@ -33,7 +33,7 @@ std::string two_tasks(int version) {
          "END_RESOURCE END_CONFIGURATION\n";
 }
 
-TEST(Cases, case43_every_scan_of_every_task_runs_one_version) {
+TEST(Cases, C6_case43_every_scan_of_every_task_runs_one_version) {
   Plant plant(two_tasks(1), {}, 50 * kUs);
   int version = 1;
   int refused = 0;

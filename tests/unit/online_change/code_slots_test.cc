@@ -205,6 +205,35 @@ TEST(CodeSlots, D5_beyond_the_limit_is_refused_with_the_amounts) {
   EXPECT_EQ(plant.get("Main.a.n"), "13");
 }
 
+// What a slot was before it grew is free again, and the limit is of what there is then.
+TEST(CodeSlots, D5_the_limit_can_be_used_to_its_last_byte) {
+  const std::string small = source("n := n + 1;");
+  const std::string large = source(repeated("n := n + 1; ", 400));
+  Plant at_once(small);
+  at_once.change(large);
+  const uint64_t units = at_once.controller().code_slots().total_units();
+  for (const uint64_t missing : {0, 1}) {
+    Settings settings;
+    settings.options.code_limit = (units - missing) * sizeof(ir::Unit);
+    Plant plant(small, settings);
+    plant.change(source(repeated("n := n + 1; ", 200)));
+    plant.accept();
+    plant.change(small);
+    plant.accept();
+    EXPECT_LT(plant.controller().code_slots().total_units(), units);
+    const base::Status staged = plant.stage(plant.package(large));
+    ASSERT_EQ(staged.ok(), missing == 0);
+    if (staged.ok()) {
+      EXPECT_EQ(plant.controller().code_slots().total_units(), units);
+    } else {
+      EXPECT_EQ(staged.error().refusal, Refusal::kTooLarge);
+      EXPECT_NE(staged.error().text.find(std::to_string(sizeof(ir::Unit)) + " too few are free"),
+                std::string::npos)
+          << staged.error().text;
+    }
+  }
+}
+
 TEST(CodeSlots, D5_case49_ten_thousand_edits_take_no_more_room) {
   const std::string versions[] = {source(repeated("n := 5 - n; ", 3)),
                                   source(repeated("n := 7 - n; ", 30))};

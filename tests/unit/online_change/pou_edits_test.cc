@@ -114,6 +114,20 @@ TEST(PouEdits, D7_structures_results_and_methods_belong_to_the_interface) {
   EXPECT_EQ(edits_between(first, program("b : INT;", "INT", "SINT"))[0].pou, "B.M");
 }
 
+TEST(PouEdits, D7_an_interface_is_seen_behind_other_edits) {
+  const auto program = [](const char* step, const char* type) {
+    return std::string("FUNCTION Aside : INT Aside := ") + step + "; END_FUNCTION\n" +
+           "FUNCTION Scale : INT VAR_INPUT x : " + type + "; END_VAR Scale := 2; END_FUNCTION\n" +
+           "PROGRAM Main VAR n : INT; END_VAR n := Aside() + Scale(1); END_PROGRAM";
+  };
+  const auto edits = edits_between(program("1", "INT"), program("2", "SINT"));
+  ASSERT_GT(edits.size(), 1u);
+  EXPECT_EQ(edits.front().pou, "Aside");
+  const base::Status restricted = check_restricted(edits);
+  ASSERT_FALSE(restricted.ok());
+  EXPECT_EQ(restricted.error().text, "`Scale`: input `x` INT -> SINT");
+}
+
 TEST(PouEdits, D7_bodies_and_locals_are_free) {
   auto edits = edits_between(pid("1.0", "VAR_INPUT a : INT; END_VAR"),
                              pid("1.5", "VAR_INPUT a : INT; END_VAR VAR more : LREAL; END_VAR"));

@@ -201,6 +201,7 @@ class Recorder : public vm::IoPort {
   void send(std::span<const uint8_t> outputs) override {
     log += "out" + std::to_string(outputs[0]) + " ";
   }
+  void at_boundary(const vm::ProcessImage&, uint8_t*) override { log += "service "; }
   std::string log;
   uint8_t given = 0;
 };
@@ -223,7 +224,28 @@ TEST(Scheduling, D6_PhasesOfAScan) {
     EXPECT_TRUE((*controller)->at_boundary());
   }
   EXPECT_EQ(first, 0);
-  EXPECT_EQ(devices.log, "out0 in1 | out1 in2 | out2 in3 | ");
+  EXPECT_EQ(devices.log, "out0 in1 service | out1 in2 service | out2 in3 service | ");
+}
+
+// However long a scan takes, and however late one begins: the next one begins where it would have.
+TEST(Scheduling, D6_ThePeriodIsFixed) {
+  constexpr int64_t kPeriodMs = 10;
+  Plant plant(
+      "PROGRAM P VAR n : DINT; END_VAR n := n + 1; END_PROGRAM CONFIGURATION c RESOURCE r "
+      "ON cpu TASK T (INTERVAL := T#10ms); PROGRAM P WITH T : P; END_RESOURCE "
+      "END_CONFIGURATION");
+  ASSERT_TRUE(plant.ok());
+  plant.cycles(1);
+  int64_t next_ms = kPeriodMs;
+  for (const int64_t late_ms : {0, 3, 9, 0, 14, 27, 1}) {
+    EXPECT_EQ(plant->next_release_ns(), next_ms * kMs);
+    plant.clock.advance((next_ms + late_ms) * kMs - plant.clock.now_ns());
+    plant.cycles(1);
+    EXPECT_EQ(plant.clock.now_ns(), (next_ms + late_ms) * kMs) << "it has waited for nothing";
+    next_ms += (late_ms / kPeriodMs + 1) * kPeriodMs;
+  }
+  plant.cycles(1);
+  EXPECT_EQ(plant.clock.now_ns(), next_ms * kMs) << "and the rest of the period is others'";
 }
 
 }  // namespace
