@@ -1,6 +1,7 @@
 // Code slots (D1, D2, D5): an edited POU is written to its unused slot, everything else stays where
 // it is; growth is checked.
 #include <algorithm>
+#include <cstring>
 #include <map>
 
 #include "tests/unit/online_change/plant.h"
@@ -51,6 +52,37 @@ TEST(CodeSlots, D1_D2_one_edited_pou_is_one_slot) {
   EXPECT_EQ(plant.controller().code_slots().written(), written + 1);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.a.n"), "4");
+}
+
+// The same where types change with the code, so that all code is made anew and compared.
+TEST(CodeSlots, D1_D2_one_edited_pou_with_other_variables_is_one_slot) {
+  const auto with = [](const char* variable, const char* step) {
+    return "FUNCTION_BLOCK Edited VAR n : INT; " + std::string(variable) + " END_VAR n := n + " +
+           step +
+           "; END_FUNCTION_BLOCK FUNCTION_BLOCK Other VAR n : INT; END_VAR n := n + 2; "
+           "END_FUNCTION_BLOCK PROGRAM Main VAR a : Edited; b : Other; END_VAR a(); b(); "
+           "END_PROGRAM";
+  };
+  Plant plant(with("", "1"));
+  plant.run(1);
+  const auto first = addresses(plant);
+  const auto length = [&] {
+    for (const ir::LinkedPou& pou : plant.controller().image().pous) {
+      if (pou.name == "Edited") return pou.unit_count;
+    }
+    return 0u;
+  };
+  const uint32_t before = length();
+  const uint64_t written = plant.controller().code_slots().written();
+  plant.change(with("more : LREAL;", "7"));
+  ASSERT_EQ(length(), before) << "by its length it is the same";
+  EXPECT_EQ(plant.controller().code_slots().written(), written + 1);
+  for (const auto& [name, code] : addresses(plant)) {
+    EXPECT_EQ(code == first.at(name), name != "Edited") << name;
+  }
+  plant.run(1);
+  EXPECT_EQ(plant.get("Main.a.n"), "8");
+  EXPECT_EQ(plant.get("Main.b.n"), "4");
 }
 
 // New constants go behind those that are there, so that no other POU's code names other places.
@@ -180,6 +212,30 @@ TEST(CodeSlots, D5_inside_the_slack_a_slot_stays) {
   EXPECT_GT(plant.controller().code_slots().total_units(), units);
   plant.run(1);
   EXPECT_EQ(plant.get("Main.a.n"), "400");
+}
+
+// What is longer than its slot by one unit gets another one; what fits to the last unit does not.
+TEST(CodeSlots, D5_nothing_is_written_behind_the_end_of_a_slot) {
+  vm::CodeSlots slots(1u << 20);
+  uint32_t number = 0;
+  const ir::Unit* running = nullptr;
+  const auto place = [&](size_t size) {
+    const ir::Unit unit = ir::Unit::extension(++number, 0);
+    const std::vector<ir::Unit> code(size, unit);
+    running = *slots.place(0, "F", code, running, {});
+    EXPECT_EQ(std::memcmp(running, code.data(), size * sizeof(ir::Unit)), 0);
+    return running;
+  };
+  const ir::Unit* const first = place(100);
+  const uint64_t capacity = slots.total_units();
+  EXPECT_GE(capacity, 125u);
+  const ir::Unit* const second = place(100);
+  ASSERT_EQ(slots.total_units(), 2 * capacity);
+  EXPECT_EQ(place(capacity), first);
+  EXPECT_EQ(place(capacity), second);
+  EXPECT_EQ(slots.total_units(), 2 * capacity);
+  place(capacity + 1);
+  EXPECT_GT(slots.total_units(), 2 * capacity + 1);
 }
 
 TEST(CodeSlots, D5_beyond_the_limit_is_refused_with_the_amounts) {

@@ -21,6 +21,7 @@ constexpr int64_t kMs = 1'000'000;
 
 // Something of every kind of step, spread over many pages.
 const char* const kFirst = R"(
+VAR_GLOBAL total : DINT; last : ARRAY[0..9] OF INT; END_VAR
 TYPE Part : STRUCT low, high : INT; END_STRUCT END_TYPE
 FUNCTION_BLOCK Motor VAR hours : DINT; speed : INT := 5; part : Part; END_VAR hours := hours + 1; END_FUNCTION_BLOCK
 PROGRAM Main
@@ -30,9 +31,10 @@ PROGRAM Main
   END_VAR
   FOR i := 1 TO 40 DO m[i](); END_FOR
   x := x + 1; name := 'abc'; k := (k + 7) MOD 3000; log[k] := x; far[9 * (k MOD 1000)] := k;
-  p := ADR(log[17]); r REF= m[7];
+  p := ADR(log[17]); r REF= m[7]; total := total + x; last[k MOD 10] := k;
 END_PROGRAM)";
 const char* const kSecond = R"(
+VAR_GLOBAL total : LREAL; last : ARRAY[0..9] OF INT; END_VAR
 TYPE Part : STRUCT first : LREAL; low, high : DINT; END_STRUCT END_TYPE
 FUNCTION_BLOCK Motor
   VAR hours : DINT; speed : LREAL := 5; part : Part; trace : ARRAY[0..99] OF LINT; END_VAR
@@ -89,6 +91,7 @@ TEST(Standby, C2_C6_the_areas_exchange_their_roles) {
 // The same with most of it in its place: what changed is copied there, and only the steps that it
 // touches are done again.
 const char* const kLittle = R"(
+VAR_GLOBAL total : DINT; last : ARRAY[0..9] OF INT; END_VAR
 TYPE Part : STRUCT low, high : INT; END_STRUCT END_TYPE
 FUNCTION_BLOCK Motor VAR hours : DINT; speed : REAL := 5; part : Part; END_VAR hours := hours + 1; END_FUNCTION_BLOCK
 PROGRAM Main
