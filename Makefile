@@ -46,12 +46,13 @@ demo: setup
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
-# TESTS: which of them, as a regular expression.
+# TESTS: which of them, as a regular expression; EXCEPT: without these.
 TESTS :=
+EXCEPT :=
 minimal: setup
 	@cmake --preset minimal >/dev/null
 	@cmake --build build/minimal -j $(JOBS)
-	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)')
+	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)') $(if $(EXCEPT),-E '$(EXCEPT)')
 
 # Every invariant is checked, those of hot loops too (base/check.h).
 hard: setup
