@@ -41,6 +41,18 @@ expect 0 stvm stop --dir roomy
 expect 7 stvm serve line --dir tight --code-limit 16
 said 'code'
 expect 2 stvm serve line --dir tight --code-limit many
+# D5 The slack of code slots: the project's, or the option's.
+needs() { sed -n 's/.*needs a code slot of \([0-9]*\) bytes.*/\1/p' err; }
+expect 7 stvm serve line --dir tight --code-limit 16 --code-slack 0
+least=$(needs)
+cp line/stc.toml kept.toml
+printf '[slack]\ncode_percent = 1000\n' >line/stc.toml
+expect 7 stvm serve line --dir tight --code-limit 16
+[ "$(needs)" -gt $((least * 2)) ] || fail "the project's slack: $(needs), without $least"
+expect 7 stvm serve line --dir tight --code-limit 16 --code-slack 0
+[ "$(needs)" -eq "$least" ] || fail "the option's slack: $(needs), without $least"
+expect 2 stvm serve line --dir tight --code-slack 10001
+mv kept.toml line/stc.toml
 
 # Mistakes are found by every command that reads the project.
 for line in 'strategy = "copy"' 'restricted = 1' 'data_limit = "x"' 'data_limit = -1' 'speed = 3'; do

@@ -39,6 +39,7 @@ base::Result<ChangeSettings> change_settings(const std::vector<std::string>& pat
     file->take<std::string>("change.boots", boots);
     if (!boots.empty()) settings.last_edit = boots == "last-edit";
     file->take<int64_t>("change.data_limit", settings.data_limit);
+    file->take<int64_t>("slack.code_percent", settings.code_slack_percent);
   }
   return settings;
 }

@@ -52,6 +52,7 @@ class Player {
     options.fuel_slice = start.fuel_slice;
     options.fuel_budget = start.fuel_budget;
     options.code_limit = start.code_limit;
+    options.code_slack_percent = 0;  // what found room then finds it here
     options.data_limit = start.data_limit;
     options.on_trap = start.on_trap;
     uint64_t retained = 0;

@@ -35,6 +35,8 @@ constexpr tools::OptionRow kServeOptions[] = {
      "bytes of all data areas of a change together (default: no limit, or what the project says)"},
     STVM_TIER_OPTION,
     {"--code-limit", "BYTES", "bytes of all code, two slots for each POU (default: 2 GiB)"},
+    {"--code-slack", "PERCENT",
+     "room in each code slot for longer code (default: 25, or what the project says)"},
     {"--fifo", "PRIORITY", "SCHED_FIFO for the control thread, 1 to 99"},
     {"--cpu", "N", "keep the control thread on this processor"},
     {"--lock-memory", nullptr, "keep all memory in RAM, and touch it before the first scan"},
@@ -148,6 +150,14 @@ base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
   base::Result<uint64_t> code_limit = options.number("--code-limit", limits.code_limit);
   if (!code_limit.ok()) return code_limit.error();
   limits.code_limit = *code_limit;
+  base::Result<uint64_t> slack = options.number("--code-slack", settings->code_slack_percent);
+  if (!slack.ok()) return slack.error();
+  if (*slack > vm::CodeSlots::kMostSlackPercent) {
+    return base::Error{base::Refusal::kUsage,
+                       "--code-slack is at most " +
+                           std::to_string(vm::CodeSlots::kMostSlackPercent)};
+  }
+  limits.code_slack_percent = *slack;
   base::Result<vm::Tier> tier = tier_of(options);
   if (!tier.ok()) return tier.error();
   limits.tier = tier_options(*tier, options.has("--virtual-time"));

@@ -8,8 +8,11 @@
 namespace vm {
 namespace {
 
-// A quarter more than needed, and room for a line or two in a small POU.
-uint64_t capacity_for(uint64_t units) { return units + units / 4 + 16; }
+constexpr uint64_t kLeastSlack = 16;  // units: a line or two in a small POU
+
+uint64_t capacity_for(uint64_t units, uint64_t slack_percent) {
+  return units + units * slack_percent / 100 + kLeastSlack;
+}
 
 std::string bytes_text(uint64_t units) { return std::to_string(units * sizeof(ir::Unit)); }
 
@@ -29,7 +32,7 @@ base::Digest SlotLabel::digest_of(const Start& start) {
 
 base::Status CodeSlots::make_room(Slot& slot, const std::string& name, uint64_t size) {
   if (size <= slot.capacity) return base::Ok{};
-  const uint64_t capacity = capacity_for(size);
+  const uint64_t capacity = capacity_for(size, slack_percent_);
   const uint64_t others = total_units_ - slot.capacity;
   if (others + capacity > limit_units_) {
     return base::Error{base::Refusal::kTooLarge,

@@ -32,7 +32,11 @@ struct SlotLabel {
 
 class CodeSlots {
  public:
-  explicit CodeSlots(uint64_t limit_units) : limit_units_(limit_units) {}
+  static constexpr uint64_t kSlackPercent = 25;
+  static constexpr uint64_t kMostSlackPercent = 10'000;
+  // A new slot has `slack_percent` more than its code needs, and room for a line or two.
+  explicit CodeSlots(uint64_t limit_units, uint64_t slack_percent = kSlackPercent)
+      : limit_units_(limit_units), slack_percent_(slack_percent) {}
 
   // The code of POU `number`, at a place where it stays until place() is called for that POU twice
   // more with other code. `running` is what runs of it, or null: never written. kTooLarge names
@@ -68,6 +72,7 @@ class CodeSlots {
 
   std::vector<Pair> pairs_;  // by POU number
   uint64_t limit_units_;
+  uint64_t slack_percent_;
   uint64_t total_units_ = 0;
   uint64_t written_ = 0;
 };

@@ -20,7 +20,8 @@ struct Controller::Impl {
         scheduler(options, clock, io),
         data_limit(options.data_limit),
         tier(options.tier),
-        code_slots(std::make_shared<CodeSlots>(options.code_limit / sizeof(ir::Unit))) {}
+        code_slots(std::make_shared<CodeSlots>(options.code_limit / sizeof(ir::Unit),
+                                               options.code_slack_percent)) {}
 
   const ir::Image& image() const { return running->image(); }
   std::unique_ptr<ForceChange> prepare_forces(std::vector<Force> forces) const;

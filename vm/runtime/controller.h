@@ -45,6 +45,7 @@ struct ControllerOptions {
   uint64_t fuel_slice = 1000;         // safe points between two looks at the clock; hard mode: 1
   uint64_t fuel_budget = 50'000'000;  // safe points of one scan of one task before kFuel
   uint64_t code_limit = uint64_t{2} << 30;  // bytes of all code slots (two for each POU)
+  uint64_t code_slack_percent = CodeSlots::kSlackPercent;  // of each slot, when it is made (D5)
   TierOptions tier = {};
   bool halted = false;  // begins as after a fault: nothing runs before restart()
   uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit

@@ -82,6 +82,7 @@ complete -c stvm -n '__fish_seen_subcommand_from serve' -l create -d 'without IM
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l data-limit -x -d 'bytes of all data areas of a change together (default: no limit, or what the project says)'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l tier -x -a 'auto native interp' -d 'auto (default), native or interp: the same results, other times'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l code-limit -x -d 'bytes of all code, two slots for each POU (default: 2 GiB)'
+complete -c stvm -n '__fish_seen_subcommand_from serve' -l code-slack -x -d 'room in each code slot for longer code (default: 25, or what the project says)'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l fifo -x -d 'SCHED_FIFO for the control thread, 1 to 99'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l cpu -x -d 'keep the control thread on this processor'
 complete -c stvm -n '__fish_seen_subcommand_from serve' -l lock-memory -d 'keep all memory in RAM, and touch it before the first scan'

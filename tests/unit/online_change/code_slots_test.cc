@@ -214,6 +214,27 @@ TEST(CodeSlots, D5_inside_the_slack_a_slot_stays) {
   EXPECT_EQ(plant.get("Main.a.n"), "400");
 }
 
+TEST(CodeSlots, D5_the_slack_is_what_the_project_says) {
+  uint64_t units[3];
+  for (size_t i = 0; i < 3; ++i) {
+    Settings settings;
+    settings.options.code_slack_percent = i * 100;
+    Plant plant(source(repeated("n := n + 1; ", 100)), settings);
+    units[i] = plant.controller().code_slots().total_units();
+    // Of one and a half times the length: inside of a slack of 100 %.
+    plant.change(source(repeated("n := n + 1; ", 101)));
+    plant.accept();
+    const uint64_t both = plant.controller().code_slots().total_units();
+    plant.change(source(repeated("n := n + 1; ", 150)));
+    plant.accept();
+    EXPECT_EQ(plant.controller().code_slots().total_units() > both, i == 0);
+    plant.run(1);
+    EXPECT_EQ(plant.get("Main.a.n"), "150");
+  }
+  EXPECT_EQ(units[2] - units[1], units[1] - units[0]);
+  EXPECT_GT(units[1], units[0] + units[0] / 2);
+}
+
 // What is longer than its slot by one unit gets another one; what fits to the last unit does not.
 TEST(CodeSlots, D5_nothing_is_written_behind_the_end_of_a_slot) {
   vm::CodeSlots slots(1u << 20);
