@@ -16,7 +16,7 @@ struct ChangeSettings {
   std::string unless;            // a BOOL; while it is TRUE nothing is switched
   bool last_edit = false;        // what is on trial boots after a power loss (D4)
   uint64_t data_limit = 0;       // bytes of all data areas of a change together; 0: no limit
-  uint64_t code_slack_percent = 25;  // room in code slots; of [slack], since the controller gives it
+  uint64_t code_slack_percent = 25;  // [slack] of code slots, which the controller makes
   bool table_additions = false;  // of a fleet file whose table is restricted (E-16)
 };
 

@@ -91,7 +91,6 @@ void Controller::values_put_back() { impl_->scheduler.outputs_put_back(); }
 int64_t Controller::next_release_ns() const { return impl_->scheduler.tables().next_release_ns(); }
 int64_t Controller::next_cycle_ns() const { return impl_->scheduler.next_cycle_ns(); }
 int64_t Controller::base_period_ns() const { return impl_->scheduler.tables().base_period_ns; }
-
 const ir::Image& Controller::image() const { return impl_->image(); }
 const ir::VerifiedImage& Controller::verified() const { return impl_->running->verified(); }
 const Generation& Controller::generation() const { return *impl_->running; }
