@@ -118,7 +118,9 @@ base::Result<online_change::SwitchReport> ControllerService::switch_in_time(
     if (report->ok() && controller_.faulted()) go_on_hot();
     done_ns = clock_.now_ns();
     change_.set_interruption(nullptr);
-    if (report->ok()) keeper_.take(after);
+    if (!report->ok()) return;
+    keeper_.take(after);
+    guard_.begin();
   };
   const auto is_armed = [&] { return change_.state() == online_change::State::kArmed; };
   for (int attempt = 0; attempt < kSwitchAttempts && !report; ++attempt) {
@@ -211,6 +213,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
               request.flags,     {}};
   // Whoever brings an edit again has no project that says so.
   if (!redone_.empty()) trial.switch_flags |= undone_.back().switch_flags & vm::kLastEditBoots;
+  if (guard_.is_staged()) trial.switch_flags &= ~vm::kLastEditBoots;  // X6-08
   trial.taken_out = taken_out_;
   trial.edit.name = redone_.empty() ? "E" + std::to_string(edits_made_ + 1) : redone_;
   base::Status ready = prepare_switch(request, trial, faulted, allow_overrun);
@@ -275,7 +278,9 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Ex
       report.emplace(change_.undo(exits));
       if (report->ok() && stopped) go_on_hot();
       done_ns = clock_.now_ns();
-      if (report->ok()) keeper_.take(after);
+      if (!report->ok()) return;
+      keeper_.take(after);
+      guard_.end();
     });
     if (!taken.ok()) return taken.error();
   }
@@ -313,87 +318,6 @@ void ControllerService::note_edit(Trial trial, const online_change::SwitchReport
   note_switch(online_change::Event::kSwitched, previous()->digest(), report, predicted_ns,
               "edit " + trials_.back().edit.name + (note_.empty() ? "" : ", " + note_));
   if (last_edit_boots()) complain(keep_edits());  // with the values of the boundary
-}
-
-// Durable first: after a power cut in between, the accepted version boots, as it was asked for.
-base::Status ControllerService::make_permanent() {
-  if (trials_.empty()) return change_.accept();
-  const ir::VerifiedImage& before = trials_.front().before;
-  base::Status stored = keep_programs();
-  if (stored.ok()) {
-    complain(store_.keep_before({before.digest(), before.encoded()},
-                                controller_.verified().digest()));
-    stored = store_follows();
-  }
-  if (stored.ok() && !store_.retained_fits()) stored = save_retained_now();
-  if (stored.ok()) stored = store_.accept();
-  if (!stored.ok()) {
-    return refused(
-        {stored.error().refusal, stored.error().text + "; the change runs, but is still on trial"});
-  }
-  base::Status accepted = change_.accept();  // nothing that runs depends on it
-  online_change::Snapshot after = empty_snapshot();
-  base::Status taken = at_boundary([&] { keeper_.take(after); });
-  change_.collect();
-  complain(taken.ok() ? keeper_.save(after) : taken);
-  note_accepted(trials_.size(), controller_.verified().digest());
-  not_undone_.clear();
-  probation_.reset();
-  return accepted;
-}
-
-// The newest edits stay on trial, and what they would go back to is stored with the values that
-// were retained there.
-base::Status ControllerService::make_oldest_permanent(size_t edits) {
-  const ir::VerifiedImage& before = trials_.front().before;
-  const ir::VerifiedImage next = trials_[edits].before;
-  base::Status stored = keep_programs();
-  if (stored.ok()) stored = store_follows();
-  if (stored.ok()) stored = save_retained_now();
-  if (stored.ok()) {
-    complain(store_.keep_before({before.digest(), before.encoded()}, next.digest()));
-    const online_change::Snapshot& values = trials_[edits].retained;
-    stored = store_.accept_below({next.digest(), next.encoded()}, values.cycle, values.values);
-  }
-  if (!stored.ok()) {
-    return refused(
-        {stored.error().refusal, stored.error().text + "; all edits are still on trial"});
-  }
-  base::Status accepted = change_.accept_oldest(edits);
-  note_accepted(edits, next.digest());
-  if (last_edit_boots()) complain(keep_edits());
-  return accepted;
-}
-
-void ControllerService::note_accepted(size_t edits, const base::Digest& next) {
-  online_change::JournalEntry done = entry(online_change::Event::kAccepted);
-  done.from = trials_.front().before.digest();
-  done.to = next;
-  done.text = "edit " + trials_.front().edit.name;
-  if (edits > 1) done.text += " to " + trials_[edits - 1].edit.name;
-  store_.note(std::move(done));
-  trials_.erase(trials_.begin(), trials_.begin() + static_cast<std::ptrdiff_t>(edits));
-  ++edition_;
-  changed_by_ = who_;
-}
-
-base::Result<base::Bytes> ControllerService::accept(const vm::Request& request) {
-  size_t edits = trials_.size();
-  if (!request.names.empty()) {
-    const auto found = std::find_if(trials_.begin(), trials_.end(), [&](const Trial& trial) {
-      return trial.edit.name == request.names.front();
-    });
-    if (found == trials_.end()) {
-      return base::Error{base::Refusal::kNothingToUndo,
-                         "no edit `" + request.names.front() +
-                             "` is on trial; `stvm edits` shows those that are"};
-    }
-    edits = static_cast<size_t>(found - trials_.begin()) + 1;
-  }
-  base::Status permanent =
-      edits == trials_.size() ? make_permanent() : make_oldest_permanent(edits);
-  if (!permanent.ok()) return permanent.error();
-  return base::Bytes{};
 }
 
 }  // namespace stvm

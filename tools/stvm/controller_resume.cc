@@ -64,7 +64,7 @@ void ControllerService::resume(const std::vector<online_change::ResumedEdit>& ed
 }
 
 void ControllerService::keep_trial_over_stop() {
-  if (trials_.empty()) return;
+  if (trials_.empty() || guard_.is_on()) return;  // X6-08: nobody would watch it
   base::Status kept = keep_edits();
   if (kept.ok()) kept = store_follows();
   if (kept.ok()) kept = store_.set_resumes(true);

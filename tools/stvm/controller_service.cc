@@ -33,10 +33,14 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       keeper_(controller, store, wall_time_),
       change_(controller),
       units_(controller, {controller.cycles(), wall_time_(), start_.who, "started"}),
+      guard_(controller, clock),
       aside_(store),
       keep_again_(1'000'000'000, 8'000'000'000) {
   trials_.reserve(base::kMostEditsOnTrial);  // after a switch nothing may fail
   undone_.reserve(base::kMostEditsOnTrial);
+  guard_.failed = [this] {
+    if (wake) wake();
+  };
   boundary_.give_up = [this] { return preparing_ && aborted(); };
 }
 

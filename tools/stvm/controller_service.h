@@ -18,6 +18,7 @@
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
 #include "tools/stvm/rehearsal.h"
+#include "tools/stvm/trial_guard.h"
 #include "tools/stvm/unit_table.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/live_copy.h"
@@ -80,7 +81,7 @@ class ControllerService : public vm::Service {
   // stored again.
   void keep_up() override;
   int keep_up_ms() const override {
-    return probation_ || watches_unless() ? kProbationLookMs : 1000;
+    return probation_ || guard_.is_on() || watches_unless() ? kProbationLookMs : 1000;
   }
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_acquire); }
   // Who wanted it; after stop_wanted().
@@ -122,8 +123,8 @@ class ControllerService : public vm::Service {
     return trials_.empty() ? nullptr : &trials_.back().before;
   }
   void note_edit(Trial trial, const online_change::SwitchReport& report, int64_t predicted_ns);
-  // The oldest `edits` boot as version `next`.
-  void note_accepted(size_t edits, const base::Digest& next);
+  // The oldest `edits` boot as version `next`. `watched`: whose trial it was; "": nobody's.
+  void note_accepted(size_t edits, const base::Digest& next, const std::string& watched);
   // A name must be that of the newest one.
   base::Status check_newest(const vm::Request& request) const;
   // From the oldest; none of that name.
@@ -332,6 +333,7 @@ class ControllerService : public vm::Service {
   std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of
   std::string not_undone_;                            // why the automatic undo failed: an alarm
   std::optional<Probation> probation_;                // in its first cycles
+  TrialGuard guard_;                                  // of the trial of a roll-out
   online_change::StoredImage before_;                 // that pages of kBefore are of
   uint64_t before_of_ = 0;                            // session
   uint64_t switched_cycle_ = 0;                       // cycles before the last switch

@@ -90,6 +90,11 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   const auto strategy =
       standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
   const bool rehearsal = (flags & vm::kRehearsal) != 0;
+  if (guard_.is_on()) {
+    return base::Error{base::Refusal::kChangePending,
+                       "the edit on trial belongs to a roll-out (" + guard_.note() +
+                           "); it must be accepted or taken back first"};
+  }
   const bool own = only_looked_at_ && looked_at_by_ == session_;
   const bool taken = change_.state() != online_change::State::kIdle && !own;
   if (rehearsal && taken) {
@@ -253,6 +258,7 @@ void ControllerService::forget_staged() {
   taken_out_.clear();
   unless_ = {};
   note_.clear();
+  guard_.forget();
   forget_report();
   if (std::exchange(only_looked_at_, false)) gone_.insert(looked_at_by_);
 }

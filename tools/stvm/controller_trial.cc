@@ -64,7 +64,37 @@ std::string ControllerService::look_at_trial() {
   return {};
 }
 
+// Conditions of the trial of the staged change; of a dry run they are checked only.
+base::Result<base::Bytes> ControllerService::guard(const vm::Request& request) {
+  base::Result<GuardOrder> order = decode_guard_order(request.data);
+  if (!order.ok()) return order.error();
+  if (base::Status there = check_not_gone(); !there.ok()) return there.error();
+  const online_change::Change& change = looked_at();
+  if (change.next() == nullptr) return base::Error{base::Refusal::kBusy, "no change is staged"};
+  if (has_no_program()) {
+    return base::Error{base::Refusal::kNothingToUndo, "a first program is not on trial"};
+  }
+  // Else the trial of somebody else would end with it.
+  if (!trials_.empty()) {
+    return base::Error{base::Refusal::kChangePending,
+                       "an edit is on trial here; accept or undo it before the roll-out"};
+  }
+  const bool only_checked = rehearses() || only_looked_at_;
+  base::Status taken = only_checked
+                           ? TrialGuard::check(*order, change.next()->image())
+                           : guard_.stage(std::move(*order), change.next()->image());
+  if (taken.ok()) return base::Bytes{};
+  return only_checked ? taken.error() : refused(taken.error());
+}
+
 void ControllerService::watch_trial() {
+  if (guard_.is_on()) {
+    if (const auto cause = guard_.look_aside(!store_.complaints().empty())) {
+      base::Status failed = look_at_boundary([&] { guard_.fail(*cause); });
+      if (!failed.ok()) return;
+    }
+    if (guard_.has_failed()) return give_back(guard_.why());
+  }
   if (!probation_) return;
   if (trials_.empty() || trials_.back().edit.name != probation_->edit) {
     probation_.reset();
@@ -110,6 +140,12 @@ void ControllerService::give_back(const std::string& why) {
   if (undone.ok()) return;
   not_undone_ = "the version on trial was not undone after " + why + ": " +
                 base::to_string(undone.error()) + "; `stvm undo` tries again";
+  // No boundary came: it is tried again.
+  if (!guard_.has_failed() || undone.error().refusal == base::Refusal::kBusy) return;
+  guard_.give_up();
+  if (!guard_.stops_safe()) return;
+  stopped_by_ = "controller";
+  stop_wanted_.store(true, std::memory_order_release);
 }
 
 // At a boundary, after a switch or an undo, when a trap had stopped something: tasks run again

@@ -57,6 +57,15 @@ base::Status rehearse(const SwitchOptions& options, ControllerClient& client) {
   return answer.ok() ? base::Status(base::Ok{}) : base::Status(answer.error());
 }
 
+// X6-03: the controller takes them, or nothing is switched.
+base::Status guard_trial(const SwitchOptions& options, ControllerClient& client) {
+  if (options.guard.empty()) return base::Ok{};
+  vm::Request request{.command = vm::Command::kGuard};
+  request.data = options.guard;
+  base::Result<base::Bytes> answer = client.call(std::move(request));
+  return answer.ok() ? base::Status(base::Ok{}) : base::Status(answer.error());
+}
+
 // Variables that the staged version would no longer exchange with other resources.
 std::vector<std::string> exchange_notes(vm::StatusReport& status) {
   std::vector<std::string> notes;
@@ -186,6 +195,7 @@ base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClien
   }
   outcome.shown = std::chrono::steady_clock::now();
   base::Status go = may_switch(options, outcome.page);
+  if (go.ok()) go = guard_trial(options, client);
   if (options.dry_run && go.ok()) go = rehearse(options, client);
   if (options.dry_run || !go.ok()) {
     base::Result<base::Bytes> cancelled = client.call({.command = vm::Command::kCancel});

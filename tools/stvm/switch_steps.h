@@ -20,6 +20,7 @@ struct SwitchOptions {
   std::string health;         // a BOOL that must stay TRUE, or the controller undoes the change
   std::string unless;         // a BOOL; while it is TRUE nothing is switched
   std::string note;           // what the journal says of it (E-33)
+  base::Bytes guard = {};     // conditions of its trial, as vm::Command::kGuard has them; none
   std::string taken_out;      // the edit whose work it takes back
   bool dry_run = false;
   bool all = false;  // a line for each variable

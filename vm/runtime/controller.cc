@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/check.h"
+#include "vm/runtime/boundary_watch.h"
 #include "vm/runtime/live_copy.h"
 #include "vm/runtime/native_maker.h"
 #include "vm/runtime/scheduler.h"
@@ -39,6 +40,7 @@ struct Controller::Impl {
   std::unique_ptr<Generation> running;
   // The tables of the running generation, and of one that is prepared or can come back by undo.
   std::map<const Generation*, std::unique_ptr<TaskTables>> tables;
+  BoundaryWatch* watch = nullptr;
   NativeMaker native_maker;  // ends before the generation that it works on
 };
 
@@ -74,12 +76,14 @@ base::Result<std::unique_ptr<Controller>> Controller::start(const ir::VerifiedIm
 void Controller::cycle() {
   impl_->native_maker.take(impl_->scheduler.tables(), impl_->tier.take_at, cycles());
   impl_->scheduler.run_cycle();
+  if (impl_->watch != nullptr && (at_boundary() || faulted())) impl_->watch->at_boundary();
   if (!at_boundary() || faulted()) return;
   const TaskTables& tables = impl_->scheduler.tables();
   impl_->io_port.at_boundary(tables.process_image, impl_->memory.data());
   impl_->io_port.publish_globals(tables.shared, impl_->memory.data());
 }
 void Controller::run_idle(const std::function<bool()>& unit) { impl_->scheduler.run_idle(unit); }
+void Controller::watch(BoundaryWatch* watch) { impl_->watch = watch; }
 void Controller::worked(int64_t expected_ns) { impl_->scheduler.worked(expected_ns); }
 uint64_t Controller::cycles() const { return impl_->scheduler.cycles(); }
 void Controller::reset_times() { impl_->scheduler.tables().forget_times(); }
@@ -122,11 +126,8 @@ std::optional<TaskTimes> Controller::task_times(std::string_view name) const {
   return std::nullopt;
 }
 
-uint64_t Controller::missed_releases() const {
-  uint64_t missed = 0;
-  for (const TaskSlot& task : impl_->scheduler.tables().tasks) missed += task.status.missed;
-  return missed;
-}
+uint64_t Controller::missed_releases() const { return impl_->scheduler.tables().missed_releases(); }
+uint64_t Controller::load() const { return impl_->scheduler.tables().load(); }
 
 void Controller::copy_task(size_t number, TaskSample& out) const {
   const TaskSlot& task = impl_->scheduler.tables().tasks[number];
@@ -310,7 +311,6 @@ base::Status Controller::enter() {
   if (impl_->scheduler.run_inits()) return base::Ok{};
   return impl_->last_trap(base::Refusal::kInitFailed);
 }
-
 base::Status Controller::leave(const std::vector<uint32_t>& ids, int64_t limit_ns) {
   return impl_->leave(ids, true, limit_ns);
 }

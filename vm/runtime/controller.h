@@ -32,7 +32,8 @@
 
 namespace vm {
 
-class EventRing;  // event_ring.h
+class BoundaryWatch;  // boundary_watch.h
+class EventRing;      // event_ring.h
 
 // Which variables a restart leaves as they are: none, those that are RETAIN, all.
 enum class Restart : uint8_t { kCold, kWarm, kHot };
@@ -120,6 +121,8 @@ class Controller {
   void run_idle(const std::function<bool()>& unit);
   // At a boundary, after work there that no scan did: Clock::worked.
   void worked(int64_t expected_ns);
+  // At a boundary: from now on `watch` is called at each; null: nobody.
+  void watch(BoundaryWatch* watch);
   uint64_t cycles() const;
   bool at_boundary() const;
   bool faulted() const;
@@ -153,6 +156,8 @@ class Controller {
   // At a boundary: forgets how long scans took and how late they began; counters go on.
   void reset_times();
   uint64_t missed_releases() const;              // of all tasks
+  // At a boundary: what the last scans of all cyclic tasks take of their periods, in thousandths.
+  uint64_t load() const;
   // At a boundary; nothing is allocated where `out` has the task's name already.
   void copy_task(size_t number, TaskSample& out) const;
   const Traps& traps() const;                    // the last 32

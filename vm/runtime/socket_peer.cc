@@ -8,7 +8,6 @@
 #include <cstring>
 
 namespace vm {
-namespace {
 
 std::string user_name(uid_t id) {
   char buffer[4096];
@@ -17,8 +16,6 @@ std::string user_name(uid_t id) {
   const bool known = ::getpwuid_r(id, &entry, buffer, sizeof buffer, &found) == 0 && found;
   return known ? found->pw_name : std::to_string(id);
 }
-
-}  // namespace
 
 bool is_trusted(uid_t peer, uid_t own) { return peer == 0 || peer == own; }
 

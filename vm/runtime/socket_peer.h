@@ -12,6 +12,8 @@ namespace vm {
 
 // kNotPermitted; the user by name, or as a number.
 base::Result<std::string> trusted_peer(int socket);
+// By name, or as a number.
+std::string user_name(uid_t id);
 // Is `peer` root, or who asks?
 bool is_trusted(uid_t peer, uid_t own);
 

@@ -38,6 +38,19 @@ std::vector<pollfd> poll_set(int wake, int listener, const Connections& connecti
   return set;
 }
 
+void wake_up(const Descriptor& wake) {
+  const uint64_t one = 1;
+  if (::write(wake.get(), &one, sizeof one) < 0) {
+    // Full only when it has been written before: the thread wakes all the same.
+  }
+}
+
+// What woke the thread is over. A thread that shall end has its flag.
+void take_wake(const Descriptor& wake) {
+  uint64_t count = 0;
+  if (::read(wake.get(), &count, sizeof count) < 0) return;
+}
+
 bool bind_to(const Descriptor& socket, const SocketAddress& address) {
   return ::bind(socket.get(), address.get(), address.size) == 0;
 }
@@ -71,16 +84,15 @@ SocketServer::SocketServer(std::string path, Descriptor listener, Descriptor wak
     : path_(std::move(path)),
       listener_(std::move(listener)),
       reserve_(spare()),
-      wake_(std::move(wake)),
-      service_(service),
-      thread_([this] { serve(); }) {}
+      wake_(std::make_shared<Descriptor>(std::move(wake))),
+      service_(service) {
+  service_.wake = [wakes = wake_] { wake_up(*wakes); };
+  thread_ = std::thread([this] { serve(); });
+}
 
 SocketServer::~SocketServer() {
   ending_.store(true);
-  uint64_t one = 1;
-  if (::write(wake_.get(), &one, sizeof one) < 0) {
-    // Full only when it has been written before: the thread wakes all the same.
-  }
+  wake_up(*wake_);
   thread_.join();
   ::unlink(path_.c_str());
 }
@@ -133,13 +145,14 @@ void SocketServer::look_meanwhile(Connections& connections) {
 // False: the thread ends.
 bool SocketServer::round(Connections& connections) {
   const bool listens = std::chrono::steady_clock::now() >= listen_again_;
-  std::vector<pollfd> set = poll_set(wake_.get(), listens ? listener_.get() : -1, connections);
+  std::vector<pollfd> set = poll_set(wake_->get(), listens ? listener_.get() : -1, connections);
   int wait_ms = listens ? service_.keep_up_ms() : static_cast<int>(kAfterFailure.count());
   if (connections.holds_any()) wait_ms = 0;
   if (::poll(set.data(), set.size(), wait_ms) < 0 && errno != EINTR) {
     std::this_thread::sleep_for(kAfterFailure);  // no memory; there will be some again
     return true;
   }
+  if (set[0].revents != 0) take_wake(*wake_);
   const Instant now = std::chrono::steady_clock::now();
   if (!connections.attend(std::span(set).subspan(2), ending_, now)) return false;
   if (!reserve_.valid()) reserve_ = spare();

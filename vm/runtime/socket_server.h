@@ -34,6 +34,8 @@ class Service {
   // Set by the server, for an answer that takes long: looks, without waiting, at who has gone and
   // at what others ask. It calls both of these, and nothing else.
   std::function<void()> meanwhile;
+  // Set by the server, for any thread, the control thread too: keep_up() is called at once.
+  std::function<void()> wake;
   // Nobody waits for the answer at hand any more.
   virtual void asker_left() {}
   // What cannot wait for the answer at hand is answered here; nullopt: it waits.
@@ -69,7 +71,7 @@ class SocketServer {
   Descriptor reserve_;  // given up for a peer when there is no other
   std::chrono::steady_clock::time_point listen_again_{};
   std::atomic<uint64_t> accepts_{0};
-  Descriptor wake_;  // eventfd: the thread shall end
+  std::shared_ptr<Descriptor> wake_;  // eventfd: the thread shall end, or keep up
   Service& service_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

@@ -188,6 +188,22 @@ void TaskTables::compare_outputs(TaskTables& a, TaskTables& b) {
 
 // Phases that a change left between periods that do not fit could make the cycle too short: then
 // all tasks get one phase.
+uint64_t TaskTables::missed_releases() const {
+  uint64_t missed = 0;
+  for (const TaskSlot& task : tasks) missed += task.status.missed;
+  return missed;
+}
+
+uint64_t TaskTables::load() const {
+  uint64_t load = 0;
+  for (const TaskSlot& task : tasks) {
+    const TaskStatus& status = task.status;
+    if (status.period_ns <= 0 || status.last_ns <= 0) continue;
+    load += static_cast<uint64_t>(status.last_ns) * 1000 / static_cast<uint64_t>(status.period_ns);
+  }
+  return load;
+}
+
 void TaskTables::set_base_period() {
   find_base_period();
   if (base_period_ns >= static_cast<int64_t>(base::kMinBaseCycleNs)) return;

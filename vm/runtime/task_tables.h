@@ -77,6 +77,8 @@ struct TaskTables {
   void forget_times() {
     for (TaskSlot& task : tasks) *task.times = TaskHistory();
   }
+  uint64_t missed_releases() const;
+  uint64_t load() const;  // Controller::load()
   // Greatest common divisor of periods and phases: every release falls on a cycle (B1).
   void set_base_period();
   // The first cycle after `cycle_start_ns`.
