@@ -64,6 +64,8 @@ class Parser {
     blanks();
     if (peek() == '[') {
       ++at_;
+      const bool one_of_many = peek() == '[';
+      if (one_of_many) ++at_;
       prefix_ = key() + ".";
       while (!failed_ && peek() == '.') {
         ++at_;
@@ -71,6 +73,11 @@ class Parser {
       }
       if (!failed_ && peek() != ']') fail("expected `]` after the table's name");
       ++at_;
+      if (one_of_many) {
+        prefix_ += std::to_string(++of_many_[prefix_]) + ".";
+        if (!failed_ && peek() != ']') fail("expected `]]` after the table's name");
+        ++at_;
+      }
     } else if (is_key_char(peek())) {
       entry();
     }
@@ -194,6 +201,7 @@ class Parser {
   size_t line_start_ = 0;
   uint32_t line_ = 1;
   std::string prefix_;
+  std::map<std::string, size_t> of_many_;  // tables that each [[name]] has had
   TomlTable table_;
   bool failed_ = false;
   base::Error error_{base::Refusal::kBadProject, {}};

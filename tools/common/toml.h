@@ -1,4 +1,5 @@
-// The subset of TOML that stc.toml uses: comments, [tables] and [tables.of.tables], `key = value`
+// The subset of TOML that stc.toml uses: comments, [tables] and [tables.of.tables], [[tables]] of
+// which there are several (the keys of the first are those of [tables.1]), `key = value`
 // with strings ("..." with \" \\ \n \t), decimal integers with `_`, true/false, and arrays of
 // strings. Anything else is an error with line and column (kBadProject).
 #pragma once
