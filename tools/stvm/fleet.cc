@@ -7,9 +7,9 @@
 #include "tools/stvm/fleet_command.h"
 #include "tools/stvm/fleet_left.h"
 #include "tools/stvm/fleet_matrix.h"
+#include "tools/stvm/fleet_rollout.h"
 #include "tools/stvm/fleet_visit.h"
 #include "tools/stvm/fleet_walk.h"
-#include "tools/stvm/package_making.h"
 #include "tools/stvm/question.h"
 
 namespace stvm {
@@ -90,15 +90,7 @@ base::Status read_options(const tools::Options& options, FleetRun& run) {
   run.how.json = run.json || *jobs > 1;  // what several say at once nobody could read
   run.walk.jobs = *jobs;
   run.walk.one_by_one = options.has("--one-by-one");
-  run.access.connect = [seconds = *patience](const FleetMember& member) {
-    return ControllerClient::connect_to(member.place, seconds);
-  };
-  const PackageOptions made{run.how.restricted, run.edit.matching};
-  run.access.package = [path = run.edit.path, made](const base::Bytes& running, size_t step) {
-    PackageOptions of_step = made;
-    of_step.step = step;
-    return make_package({{path}, {}}, of_step, running);
-  };
+  run.access = fleet_access(*patience, run.edit.path, {run.how.restricted, run.edit.matching});
   return base::Ok{};
 }
 
@@ -111,7 +103,7 @@ base::Result<FleetRun> read_run(const tools::Options& options) {
   if (!known)
     return fleet_usage("`" + run.verb +
                        "` is none of its verbs: change, status, diff, undo, "
-                       "accept, continue");
+                       "accept, continue, roll, resume, abort, watch");
   if (run.verb == "diff") {
     if (base::Status read = read_options(options, run); !read.ok()) return read.error();
     return run;
@@ -213,7 +205,22 @@ int show_status(FleetRun& run) {
 
 }  // namespace
 
+FleetAccess fleet_access(uint32_t patience_s, const std::string& file,
+                         const PackageOptions& made) {
+  FleetAccess access;
+  access.connect = [patience_s](const FleetMember& member) {
+    return ControllerClient::connect_to(member.place, patience_s);
+  };
+  access.package = [file, made](const base::Bytes& running, size_t step) {
+    PackageOptions of_step = made;
+    of_step.step = step;
+    return make_package({{file}, {}}, of_step, running);
+  };
+  return access;
+}
+
 int run_fleet(const tools::Options& options) {
+  if (is_roll_verb(options.arguments()[0])) return run_roll(options);
   base::Result<FleetRun> run = read_run(options);
   if (!run.ok()) return refuse(run.error());
   if (run->verb == "diff") return compare_fleet(options, run->access);

@@ -11,7 +11,7 @@ namespace stvm {
 FleetChange::FleetChange(const FleetEdit& edit, SwitchOptions how, FleetAccess access)
     : FleetVisit(edit, std::move(how), std::move(access), "Start it there?",
                  "not switched; the old program runs on") {
-  how_.note = fleet_note(edit.digest);
+  if (how_.note.empty()) how_.note = fleet_note(edit.digest);
 }
 
 // With --wait again, until others are done: what they leave is checked anew.

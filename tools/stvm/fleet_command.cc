@@ -21,6 +21,7 @@ constexpr tools::OptionRow kFleetOptions[] = {
     {"--one-by-one", nullptr, "wait until a controller answers, do it, and wait for the next one"},
     STVM_SWITCH_OPTIONS,
     tools::kMatchingOption,
+    {"--confirm-each-wave", nullptr, "ask before each wave of a roll-out, not only before the first"},
     STVM_FORMAT_OPTION,
 };
 
@@ -57,9 +58,10 @@ int hand_over(const tools::Options& options) {
 
 const tools::Command kFleetCommand{
     "fleet",
-    "change|undo|accept|continue|status|diff [FILE|A B]",
+    "change|undo|accept|continue|status|diff|roll|resume|abort|watch [FILE|PLAN|A B]",
     "Makes the edit of a fleet file (stc fleet) on many controllers, takes it back or accepts it,\n"
-    "goes on with those left, or says who has what of it, and what differs between them.",
+    "goes on with those left, or says who has what of it, and what differs between them. Rolls it\n"
+    "out by waves, and resumes, aborts or watches that.",
     kFleetOptions,
     1,
     3};

@@ -14,8 +14,9 @@ using online_change::JournalEntry;
 bool is_noted(const std::vector<JournalEntry>& journal, const TrialEdit& edit,
               const std::string& note) {
   return std::any_of(journal.begin(), journal.end(), [&](const JournalEntry& entry) {
+    const std::string said = "edit " + edit.name + ", " + note;
     return entry.event == online_change::Event::kSwitched && entry.from == edit.from &&
-           entry.to == edit.to && entry.text == "edit " + edit.name + ", " + note;
+           entry.to == edit.to && (entry.text == said || entry.text.starts_with(said + ", "));
   });
 }
 

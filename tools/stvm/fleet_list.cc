@@ -5,6 +5,7 @@
 
 #include "tools/common/files.h"
 #include "tools/common/toml.h"
+#include "tools/stvm/fleet_waves.h"
 
 namespace stvm {
 namespace {
@@ -21,13 +22,11 @@ class FleetList {
  public:
   explicit FleetList(const std::string& file) : file_(file) {}
 
-  base::Result<std::vector<FleetMember>> read() {
-    base::Result<base::Bytes> bytes = tools::read_bytes(file_);
-    if (!bytes.ok()) return bytes.error();
-    const base::Result<tools::TomlTable> table = tools::parse_toml(
-        file_, std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+  base::Result<std::vector<FleetMember>> read(std::string_view text) {
+    const base::Result<tools::TomlTable> table = tools::parse_toml(file_, text);
     if (!table.ok()) return table.error();
     for (const auto& [key, value] : *table) {
+      if (is_roll_key(key)) continue;  // of a roll-out (fleet_waves.h)
       if (base::Status taken = take(key, value); !taken.ok()) return taken.error();
     }
     std::vector<Listed> rows;
@@ -105,7 +104,15 @@ class FleetList {
 }  // namespace
 
 base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file) {
-  return FleetList(file).read();
+  base::Result<base::Bytes> bytes = tools::read_bytes(file);
+  if (!bytes.ok()) return bytes.error();
+  return FleetList(file).read(
+      std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+}
+
+base::Result<std::vector<FleetMember>> parse_fleet_list(const std::string& file,
+                                                        const std::string& text) {
+  return FleetList(file).read(text);
 }
 
 base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options) {

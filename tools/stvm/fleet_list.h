@@ -22,6 +22,9 @@ struct FleetMember {
 
 // Reads the list of a file. Mistakes with line and column (kBadProject).
 base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file);
+// The same of its text.
+base::Result<std::vector<FleetMember>> parse_fleet_list(const std::string& file,
+                                                        const std::string& text);
 // --dir, --host, and --fleet FILE in the order of the file. kUsage: there is none, or two have one
 // name.
 base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options);

@@ -13,10 +13,11 @@ namespace {
 // One connection to a controller of this process.
 class Line : public vm::Transport {
  public:
-  Line(plc::Plc& plc, std::string user, uint64_t session)
-      : plc_(plc), user_(std::move(user)), session_(session) {}
+  Line(plc::Plc& plc, std::string user, uint64_t session, const std::function<bool()>& arrives)
+      : plc_(plc), user_(std::move(user)), session_(session), arrives_(arrives) {}
   ~Line() override { plc_.service().ended(session_); }
   base::Result<base::Bytes> exchange(base::ByteSpan request) override {
+    if (arrives_ && !arrives_()) return base::Error{base::Refusal::kNotRunning, "cut"};
     plc_.service().asked_by(user_, session_);
     bool keep_open = true;
     return plc_.service().answer(request, keep_open);
@@ -26,6 +27,7 @@ class Line : public vm::Transport {
   plc::Plc& plc_;
   std::string user_;
   uint64_t session_;
+  const std::function<bool()>& arrives_;
 };
 
 base::Result<base::Bytes> merged_package(const ir::VerifiedImage& original,
@@ -51,6 +53,11 @@ void Fleet::add(const std::string& name, const std::string& source) {
   plcs_.back()->plc.run(2);
 }
 
+void Fleet::clear() {
+  members_.clear();
+  plcs_.clear();
+}
+
 plc::Plc& Fleet::plc(const std::string& name) {
   for (size_t i = 0; i < members_.size(); ++i) {
     if (members_[i].name == name) return plcs_[i]->plc;
@@ -62,7 +69,8 @@ plc::Plc& Fleet::plc(const std::string& name) {
 base::Result<stvm::ControllerClient> Fleet::connect(const std::string& name,
                                                     const std::string& user) {
   if (name == gone_) return base::Error{base::Refusal::kNotRunning, "cut off"};
-  return stvm::ControllerClient(std::make_unique<Line>(plc(name), user, ++sessions_));
+  return stvm::ControllerClient(
+      std::make_unique<Line>(plc(name), user, ++sessions_, before_message));
 }
 
 stvm::FleetAccess Fleet::access() {

@@ -25,6 +25,8 @@ class Fleet {
   // A controller called `name` with a program of that source.
   void add(const std::string& name, const std::string& source);
   plc::Plc& plc(const std::string& name);
+  // From now on it has no controllers.
+  void clear();
   const std::vector<stvm::FleetMember>& members() const { return members_; }
   // As `user`. The controller answers until it is cut off.
   base::Result<stvm::ControllerClient> connect(const std::string& name, const std::string& user);
@@ -36,6 +38,8 @@ class Fleet {
   // Its units start one after the other; or only where there is no room for all of them.
   void start_each(linker::StepOrder order, bool if_needed = false);
   const stvm::FleetEdit& edit() const { return edit_; }
+  // Asked before each message to a controller; false: it is lost, and its answer with it.
+  std::function<bool()> before_message;
   // Called before a package is made, with the number of the controller that it is for.
   std::function<void()> before_package;
   // No package of this step is made, for that reason.
