@@ -152,6 +152,14 @@ answers stvm-revert 0 at revert --yes --allow-loss
 answers stvm-fleet 0 at fleet change next.fleet --yes --allow-overrun
 answers stvm-fleet 0 at fleet undo next.fleet --yes
 answers stvm-fleet 0 at fleet accept next.fleet --yes
+sed 's/more : INT/more, most : INT/' next/main.st >fourth.st
+stvm accept --dir plc >/dev/null 2>&1 || true
+expect 0 stvm image --dir plc -o now.img
+expect 0 stc fleet now.img fourth.st -o roll.fleet --table free
+printf '[controllers.plc]\ndir = "plc"\n[[wave]]\ncount = 1\nsoak = "0s"\n' >fleet.toml
+answers stvm-fleet 0 stvm fleet roll roll.fleet --fleet fleet.toml --dry-run
+answers stvm-fleet-roll 0 stvm fleet roll roll.fleet --fleet fleet.toml --yes --allow-overrun
+answers stvm-fleet-roll 0 stvm fleet watch roll.fleet.plan
 answers stvm-restart 0 at restart
 answers stvm-journal 0 at journal
 answers stvm-events 0 at events

@@ -68,7 +68,13 @@ FleetRoll::Found FleetRoll::look(size_t member) const {
   Found found;
   const RollMember& row = plan_.members[member];
   base::Result<ControllerClient> client = access_.connect(row.member);
-  if (!client.ok() || !client->status().ok()) return found;
+  if (!client.ok()) return found;
+  base::Result<vm::StatusReport> status = client->status();
+  if (!status.ok()) return found;
+  const std::string noted = "plan " + plan_.id + " wave ";
+  for (std::string& alarm : status->alarms) {
+    if (alarm.find(noted) != std::string::npos) found.alarm = std::move(alarm);
+  }
   const auto edits = client->edits();
   if (!edits.ok()) return found;
   const auto is_it = [&](const TrialEdit& one) {
@@ -82,7 +88,6 @@ FleetRoll::Found FleetRoll::look(size_t member) const {
   const auto journal = client->journal();
   found.answers = journal.ok();
   if (!journal.ok()) return found;
-  const std::string noted = "plan " + plan_.id + " wave ";
   using online_change::Event;
   for (const online_change::JournalEntry& entry : *journal) {
     const bool back = entry.text.find(", " + std::string(kBackNote)) != std::string::npos;
@@ -264,7 +269,9 @@ void FleetRoll::settle(size_t member, const Found& found) {
     row.silent_ms = 0;
   }
   const RollState state = plan_.members[member].state;
-  if (found.on_trial) {
+  if (found.on_trial && !found.alarm.empty()) {
+    decide(member, RollState::kStays, found.alarm);
+  } else if (found.on_trial) {
     if (state != RollState::kOnTrial) decide(member, RollState::kOnTrial);
   } else if (found.accepted) {
     decide(member, RollState::kAccepted);
@@ -306,7 +313,7 @@ void FleetRoll::watch(size_t member) {
   const Found found = look(member);
   if (!found.answers) return silent(member);
   const bool was_silent = plan_.members[member].silent_ms != 0;
-  if (found.on_trial && !was_silent) return;
+  if (found.on_trial && !was_silent && found.alarm.empty()) return;
   settle(member, found);
 }
 
@@ -350,6 +357,9 @@ void FleetRoll::accept(size_t member) {
       !decide(member, RollState::kAccepting)) {
     return;
   }
+  const Found before = look(member);
+  const bool well = before.on_trial && before.alarm.empty();
+  if (before.answers && !well) return settle(member, before);
   FleetAccept accept(edit_, how(member), access_);
   const FleetRow row = accept.visit(plan_.members[member].member);
   const Found found = look(member);

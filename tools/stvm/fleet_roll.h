@@ -53,7 +53,8 @@ class FleetRoll {
     std::string edit;
     base::Digest from{};
     base::Digest to{};
-    std::string text;  // of what became of it
+    std::string text;   // of what became of it
+    std::string alarm;  // it is sick, and could not take the edit back
   };
   using Step = void (FleetRoll::*)(size_t);
 

@@ -8,7 +8,7 @@ namespace {
 bool is_open(RollState state) {
   return state == RollState::kStarting || state == RollState::kOnTrial ||
          state == RollState::kAccepting || state == RollState::kLost ||
-         state == RollState::kUndoing;
+         state == RollState::kUndoing || state == RollState::kStays;
 }
 
 }  // namespace

@@ -159,7 +159,8 @@ int finish_roll(const RollJob& job, const base::Status& ended) {
     std::printf("\n%s", plan_page(job.plan, wall_ms()).c_str());
   }
   if (ended.ok()) return plan_exit_code(job.plan);
-  if (!job.json && !is_over(job.plan.phase)) {
+  if (job.json) return refuse_reported(ended.error());
+  if (!is_over(job.plan.phase)) {
     std::printf("`stvm fleet resume %s` goes on with it\n", job.path.c_str());
   }
   return refuse(ended.error());
@@ -229,7 +230,8 @@ int begin_roll(const tools::Options& options) {
   base::Status fits = check_rows(job.plan, rows);
   if (dry || !fits.ok()) {
     if (job.json) std::fputs(fleet_json(job.edit.digest, rows).c_str(), stdout);
-    return fits.ok() ? fleet_exit_code(rows) : refuse(fits.error());
+    if (fits.ok()) return fleet_exit_code(rows);
+    return job.json ? refuse_reported(fits.error()) : refuse(fits.error());
   }
   if (job.ask) {
     const base::Status go = ask("Begin with wave 1?", "nothing was begun");

@@ -23,7 +23,8 @@ and when, power cuts, and traps; oldest first. `stvm events` shows all of one th
 complete -c stvm -n __fish_use_subcommand -f -a events -d 'Shows what happens to a running controller: starts, changes, traps, overruns, devices, forces
 and writes; oldest first. Those of before it started come from its journal.'
 complete -c stvm -n __fish_use_subcommand -f -a fleet -d 'Makes the edit of a fleet file (stc fleet) on many controllers, takes it back or accepts it,
-goes on with those left, or says who has what of it, and what differs between them.'
+goes on with those left, or says who has what of it, and what differs between them. Rolls it
+out by waves, and resumes, aborts or watches that.'
 complete -c stvm -n __fish_use_subcommand -f -a source -d 'Brings back the sources that travel with the running program.'
 complete -c stvm -n __fish_use_subcommand -f -a image -d 'Writes the running program to a file.'
 complete -c stvm -n __fish_use_subcommand -f -a bridge -d 'Connects its standard streams to the controller (what --host runs there).'
@@ -262,6 +263,7 @@ complete -c stvm -n '__fish_seen_subcommand_from fleet' -l wait -d 'wait while o
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l no-auto-undo -d 'do not undo it when a trap stops a task in these cycles either'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l permanent -d 'accept at once: no undo, the new program boots next'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l matching -d 'for a fleet file: take only the units that are there as before the edit'
+complete -c stvm -n '__fish_seen_subcommand_from fleet' -l confirm-each-wave -d 'ask before each wave of a roll-out, not only before the first'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l format -x -a 'text json' -d 'text (default) or json'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'

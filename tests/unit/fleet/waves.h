@@ -40,7 +40,7 @@ class Waves : public ::testing::Test {
  protected:
   // line1 to line`count`; those of `faulty` have the edit make errors.
   void make(int count, const std::vector<int>& faulty, const std::string& roll_table) {
-    fleet_.edit(line_program(false, false), line_program(true, false));
+    fleet_.edit(source_(false, false, 0), source_(true, false, 0));
     plan_ = {};
     dead_ = false;
     saves_left_ = SIZE_MAX;
@@ -48,9 +48,11 @@ class Waves : public ::testing::Test {
     for (int i = 1; i <= count; ++i) {
       const bool bad = std::find(faulty.begin(), faulty.end(), i) != faulty.end();
       const std::string name = "line" + std::to_string(i);
-      fleet_.add(name, line_program(false, bad, i));
-      plc(i).set("Main.f.was", std::to_string(1000 + i));
-      plc(i).set("Main.level", std::to_string(100 + i));
+      fleet_.add(name, source_(false, bad, i));
+      if (!plc(i).get("Main.level").starts_with("no")) {
+        plc(i).set("Main.f.was", std::to_string(1000 + i));
+        plc(i).set("Main.level", std::to_string(100 + i));
+      }
       list += "[controllers." + name + "]\nhost = \"" + name + "\"\n";
     }
     plan_.list = list + roll_table;
@@ -174,6 +176,8 @@ class Waves : public ::testing::Test {
   }
 
   Fleet fleet_;
+  // Whether edited, whether faulty, and the number of the controller.
+  std::function<std::string(bool, bool, int)> source_ = line_program;
   stvm::RollPlan plan_;
   std::string stored_;
   std::string begun_;

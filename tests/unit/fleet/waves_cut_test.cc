@@ -152,6 +152,28 @@ TEST_F(Waves, X609_AnAbortTakesBackAllOpenTrials) {
   EXPECT_FALSE(roll.abort().ok()) << "it is over";
 }
 
+// It is sick, and a step is active that only the edit has: nobody accepts that.
+TEST_F(Waves, X606_WhoCannotGoBackIsNotAccepted) {
+  source_ = [](bool edited, bool, int) {
+    return std::string(
+               "PROGRAM Main VAR go : BOOL := TRUE; back : BOOL; ok : BOOL := TRUE; "
+               "END_VAR INITIAL_STEP First: END_STEP STEP Second: END_STEP ") +
+           (edited ? "STEP Third: Deny(N); END_STEP ACTION Deny: ok := FALSE; END_ACTION "
+                     "TRANSITION FROM First TO Third := go; END_TRANSITION "
+                     "TRANSITION FROM Third TO Second := back; END_TRANSITION "
+                   : "TRANSITION FROM First TO Second := back; END_TRANSITION ") +
+           "TRANSITION FROM Second TO First := back; END_TRANSITION END_PROGRAM";
+  };
+  make(3, {},
+       "[roll]\nhealth = [\"Main.ok\"]\nsoak = \"20s\"\n[[wave]]\ncount = 1\n"
+       "[[wave]]\ncount = 2\n");
+  ASSERT_TRUE(roll().ok());
+  EXPECT_EQ(states(), "stays skipped skipped");
+  EXPECT_NE(plan_.members[0].text.find("R0313"), std::string::npos) << plan_.members[0].text;
+  EXPECT_EQ(plan_.phase, RollPhase::kFailed);
+  EXPECT_EQ(plc(1).status().edits, 1u);
+}
+
 // A second roll-out on the same controllers is refused by them, and by their check before.
 TEST_F(Waves, X602_ASecondRollOutIsRefused) {
   make(2, {}, "[roll]\nsoak = \"20s\"\n[[wave]]\ncount = 2\n");

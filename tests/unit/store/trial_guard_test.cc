@@ -298,6 +298,47 @@ TEST(TrialGuard, X605_NothingIsMadeOnTopOfIt) {
   EXPECT_EQ(rig.plc.status().change, "trial");
 }
 
+// The step that is active is one that only the edit has.
+std::string chart_program(bool edited) {
+  return std::string(
+             "PROGRAM Main VAR go : BOOL := TRUE; back : BOOL; ok : BOOL := TRUE; END_VAR "
+             "INITIAL_STEP First: END_STEP STEP Second: END_STEP ") +
+         (edited ? "STEP Third: Deny(N); END_STEP ACTION Deny: ok := FALSE; END_ACTION "
+                   "TRANSITION FROM First TO Third := go; END_TRANSITION "
+                   "TRANSITION FROM Third TO Second := back; END_TRANSITION "
+                 : "TRANSITION FROM First TO Second := back; END_TRANSITION ") +
+         "TRANSITION FROM Second TO First := back; END_TRANSITION END_PROGRAM";
+}
+
+// It is said before (the plan), and what then happens is a policy.
+TEST(TrialGuard, X606_WhatCannotBeTakenBackStaysOrStopsSafely) {
+  for (const bool safe : {false, true}) {
+    sim::SimStorage disk;
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot(chart_program(false)).ok());
+    plc.run(3);
+    ASSERT_TRUE(plc.stage(plc::build(chart_program(true), &plc.controller().image())).ok());
+    GuardOrder order = order_of({"Main.ok"});
+    order.stop_safe = safe;
+    vm::Request guard{.command = vm::Command::kGuard};
+    guard.data = encode(order);
+    ASSERT_TRUE(plc.ask(guard).ok());
+    vm::Request change{.command = vm::Command::kSwitch};
+    change.flags = vm::kAllowOverrun;
+    ASSERT_TRUE(plc.ask(change).ok());
+    for (int i = 0; i < 10; ++i) {
+      plc.run(1);
+      plc.service().keep_up();
+    }
+    EXPECT_EQ(plc.get("Main.ok"), "FALSE");
+    const vm::StatusReport status = plc.status();
+    EXPECT_EQ(status.edits, 1u) << "it stays";
+    ASSERT_FALSE(status.alarms.empty());
+    EXPECT_NE(status.alarms[0].find("R0313"), std::string::npos) << status.alarms[0];
+    EXPECT_EQ(static_cast<ControllerService&>(plc.service()).stop_wanted(), safe);
+  }
+}
+
 // A power cut and a clean end both end the trial: after them nobody would watch it.
 TEST(TrialGuard, X608_ATrialEndsWithItsController) {
   for (const bool clean : {true, false}) {
