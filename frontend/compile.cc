@@ -94,8 +94,8 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
 }
 
 void declare_all(Sema& sema) {
-  Interfaces(sema).report_not_supported();
   Collection(sema).collect();
+  Interfaces(sema).check_underlines();
   Interfaces(sema).resolve_declarations();
   Migrations(sema).collect();
   Configuration(sema).configure();

@@ -29,6 +29,20 @@ std::span<const AliasRow> alias_rows() {
   return kRows;
 }
 
+std::string_view other_name(std::string_view function, std::string_view name) {
+  struct Row {
+    std::string_view function, name, parameter;
+  };
+#define OTHER_NAME(function, name, parameter) {function, name, parameter},
+  static constexpr Row kRows[] = {
+#include "stdlib/registry.def"
+  };
+  for (const Row& row : kRows) {
+    if (row.function == function && base::same_name(row.name, name)) return row.parameter;
+  }
+  return {};
+}
+
 std::span<const std::string_view> library_names() {
 #define LIBRARY(name, interface, meaning) name,
   static constexpr std::string_view kNames[] = {

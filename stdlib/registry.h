@@ -74,6 +74,9 @@ struct AliasRow {
 };
 std::span<const AliasRow> alias_rows();
 
+// What CODESYS and TwinCAT call a parameter of a function: LEN(STR := s). Empty: no such name.
+std::string_view other_name(std::string_view function, std::string_view name);
+
 // Does a vendor call the library, or a part of it, by this name? Standard.TON, Tc2_Standard.TON.
 bool is_vendor_library(std::string_view name);
 

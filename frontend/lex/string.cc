@@ -86,6 +86,19 @@ Escape read_character(std::string_view inside, size_t at, bool latin1) {
   return {character.code, character.bytes};
 }
 
+// The byte of a character of Windows-1252 above 127, which real sources have in a STRING: the euro
+// sign, dashes and quotation marks stand where Latin-1 has control characters. 0: no such byte.
+uint8_t windows_byte(uint32_t code) {
+  static constexpr uint16_t kCodes[] = {
+      0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+      0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+  for (size_t i = 0; i < std::size(kCodes); ++i) {
+    if (kCodes[i] == code) return static_cast<uint8_t>(0x80 + i);
+  }
+  return 0;
+}
+
 // Bytes without escapes, from a source of that charset; `at` is their place in the literal.
 void append_plain(DecodedString& out, std::string_view plain, size_t at, StringCharset charset) {
   bool utf8 = charset == StringCharset::kUtf8Source;
@@ -99,6 +112,8 @@ void append_plain(DecodedString& out, std::string_view plain, size_t at, StringC
       out.bytes += ir::utf8(character.code);
     } else if (character.code <= 0xFF) {
       out.bytes += static_cast<char>(character.code);
+    } else if (const uint8_t byte = windows_byte(character.code); byte != 0) {
+      out.bytes += static_cast<char>(byte);
     } else {
       if (!out.problem) out.problem = wide_character(at + i, plain.substr(i, character.length));
       out.bytes += '?';

@@ -76,6 +76,7 @@ bool WriteChecks::check_writable(ExprId id) {
       return false;
     }
     case ExprKind::kMember: {
+      if (ask<Objects>().refuse_change(id)) return false;
       if (VarId global = infer(id).variable; global.valid()) {
         return check_writable_variable(expr, global);
       }

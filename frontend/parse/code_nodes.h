@@ -145,6 +145,7 @@ struct Expr {
   bool global : 1 = false;              // kName
   bool parenthesised : 1 = false;
   bool instruction : 1 = false;  // kCall, kBinary, kName of a function: of an instruction list
+  bool open_list : 1 = false;    // kCall: a comma stands behind the last argument
   // The height of the tree below, at most kMaxExpressionHeight: recursion over it is safe.
   uint16_t height = 1;
   base::SourceSpan span;

@@ -180,7 +180,9 @@ ExprId Parser::parse_parenthesised() {
   Expr& expr = tree_.exprs[inner.index];
   expr.parenthesised = true;
   expr.span = span_from({open.begin});
-  return inner;
+  // (ADR(x) + 2)^, (p)[2]
+  const bool led = kind() == TokenKind::kCaret || kind() == TokenKind::kLeftBracket;
+  return led && !panic_ ? parse_postfix(inner) : inner;
 }
 
 // `.x`: the global variable, even where a local one has the same name.

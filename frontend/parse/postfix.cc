@@ -121,6 +121,7 @@ ExprId Parser::parse_call(ExprId operand) {
   expr.operand = operand;
   expr.op = here();
   expr.list = parse_arguments();
+  expr.open_list = expr.list.count != 0 && current_[-2].kind == TokenKind::kComma;
   expr.span = span_from(tree_[operand].span.begin);
   return add_expression(expr);
 }
@@ -131,7 +132,7 @@ Range32 Parser::parse_arguments() {
   if (kind() != TokenKind::kRightParen) {
     do {
       arg_stack_.push_back(parse_argument());
-    } while (!panic_ && accept(TokenKind::kComma));
+    } while (!panic_ && accept(TokenKind::kComma) && kind() != TokenKind::kRightParen);
   }
   close_bracket(TokenKind::kRightParen, open);
   return move_tail(arg_stack_, mark, tree_.args);

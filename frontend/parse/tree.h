@@ -120,7 +120,8 @@ struct VarBlock {
   bool retain = false;      // RETAIN or PERSISTENT
   bool non_retain = false;  // NON_RETAIN, written out
   Access access = Access::kDefault;
-  Range32 attributes;  // of the block: {attribute 'qualified_only'} in front of VAR_GLOBAL
+  Range32 attributes;    // of the block: {attribute 'qualified_only'} in front of VAR_GLOBAL
+  bool goes_on = false;  // VAR_GLOBAL right behind the END_VAR of another one, without attributes
   ScopeId scope;
   base::SourceSpan span;
   base::SlimVector<VarDecl> vars;

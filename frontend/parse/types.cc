@@ -58,11 +58,12 @@ void Parser::parse_type(Range32 attributes) {
   decl.spec = parse_spec();
   type_level_ = false;
   if (base.valid()) {
-    if (tree_[decl.spec].kind == SpecKind::kStruct) {
+    const SpecKind shape = tree_[decl.spec].kind;
+    if (shape == SpecKind::kStruct || shape == SpecKind::kUnion) {
       tree_.specs[decl.spec.index].element = base;
     } else {
-      note_only(Code::kBadInheritance, extends.span(), "only a STRUCT extends another type",
-                "write `name : type;`");
+      note_only(Code::kBadInheritance, extends.span(),
+                "only a STRUCT or UNION extends another type", "write `name : type;`");
     }
   }
   parse_default(decl.init);

@@ -43,6 +43,8 @@ void Parser::parse_var_block(std::vector<VarBlock>& blocks, Range32 attributes) 
   block.section = section_of(opening.kind);
   block.attributes = attributes;
   block.scope = scope_;
+  block.goes_on = attributes.count == 0 && !blocks.empty() && current_ - first_ > 1 &&
+                  current_[-2].kind == TokenKind::kEndVar;
   parse_qualifiers(block);
   block.span = span_from({opening.begin});
   const size_t mark = var_stack_.size();

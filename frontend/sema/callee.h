@@ -27,7 +27,8 @@ struct Callee {
   // kFunction, kMethod; kInstance: the block; kBase: SUPER^(), the base of the own block
   uint32_t pou = kNoPou;
   const stdlib::FunctionRow* row = nullptr;
-  ir::TypeId typed;  // ADD_INT: the type of the operands; invalid: they decide
+  bool wide = false;  // WLEN: strings are WSTRING
+  ir::TypeId typed;   // ADD_INT: the type of the operands; invalid: they decide
   Conversion conversion;
   const TestCallRow* test = nullptr;
   ReferenceCall reference = ReferenceCall::kNone;

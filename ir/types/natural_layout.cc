@@ -27,6 +27,7 @@ class Builder {
     }
     return std::move(layouts_);
   }
+  uint32_t size(TypeId id) { return of(id).size; }
 
  private:
   const TypeLayout& of(TypeId id) {
@@ -92,6 +93,8 @@ class Builder {
 };
 
 }  // namespace
+
+uint32_t natural_size(const TypeTable& types, TypeId type) { return Builder(types).size(type); }
 
 Layouts natural_layouts(const TypeTable& types) { return Builder(types).build(); }
 

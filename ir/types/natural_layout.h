@@ -11,4 +11,7 @@ inline constexpr uint32_t kSlotBytes = 4;  // of a VAR_IN_OUT: the number of wha
 // `types` is complete and verified: no type contains itself, sizes fit 32 bits.
 Layouts natural_layouts(const TypeTable& types);
 
+// Of a value of one type that is complete; the others may still be made.
+uint32_t natural_size(const TypeTable& types, TypeId type);
+
 }  // namespace ir

@@ -24,6 +24,9 @@ std::string_view last_name(const Name& path) {
 }  // namespace
 
 Callee Calls::callee(const Expr& call) {
+  if (call.open_list) {
+    allow_extension("a comma behind the last argument", call.span, "take it away");
+  }
   const Expr& head = sema_.tree[call.operand];
   if (head.kind == ExprKind::kName) {
     VarId id = ask<Variables>().find_variable(head);
@@ -47,7 +50,9 @@ Callee Calls::callee(const Expr& call) {
   if (head.kind == ExprKind::kMember &&
       !sema_.namespaces.is_scope(scope_, sema_.tree[head.operand])) {
     const uint32_t owner = ask<Objects>().receiver(head.operand);
-    if (auto method = ask<Objects>().method_of(owner, head.name)) return *method;
+    if (auto method = ask<Objects>().method_of(owner, head.name)) {
+      return ask<Objects>().refuse_change(head.operand) ? Callee() : *method;
+    }
   }
   const Note& note = infer(call.operand);
   if (!note.type.valid()) return {};
@@ -78,6 +83,7 @@ Callee Calls::callee(const Expr& call) {
           "write " + quoted(block->decl->name) + ", or declare the instance as " + quoted(box));
   }
   Callee callee;
+  if (ask<Objects>().refuse_change(call.operand)) return callee;
   callee.kind = Callee::Kind::kInstance;
   callee.pou = static_cast<uint32_t>(sema_.declared.pou_by_type.find(note.type)->second);
   return callee;

@@ -78,7 +78,12 @@ std::vector<ExprId> StandardCalls::standard_arguments(const Expr& call,
 
 bool StandardCalls::standard_argument(const Arg& arg, const stdlib::FunctionRow& row,
                                       uint32_t number, std::vector<ExprId>& ordered) {
-  Parameter parameter = find_parameter(row.parameters, arg.name.text, static_cast<int32_t>(number));
+  std::string_view name = arg.name.text;
+  if (sema_.options.dialect != Dialect::kIec) {
+    const std::string_view meant = stdlib::other_name(row.name, name);
+    if (!meant.empty()) name = meant;
+  }
+  Parameter parameter = find_parameter(row.parameters, name, static_cast<int32_t>(number));
   auto at = static_cast<uint32_t>(parameter.position);
   if (parameter.position < 0 || at >= ordered.size()) {
     error(DiagnosticCode::kUnknownParameter, arg.span,

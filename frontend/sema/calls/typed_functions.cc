@@ -62,8 +62,25 @@ TypedArguments typed_arguments(FunctionRule rule, size_t count) {
 
 }  // namespace
 
-Callee Calls::typed_callee(std::string_view name) const {
+// WLEN, WCONCAT and their kin: the string functions on WSTRING, as CODESYS and TwinCAT name them.
+static Callee wide_callee(const Sema& sema, std::string_view name) {
   Callee callee;
+  const bool wide = sema.options.dialect != Dialect::kIec && name.size() > 1 &&
+                    ir::same_name(name.substr(0, 1), "W");
+  if (!wide) return callee;
+  const auto row = sema.library.functions.find(name.substr(1));
+  if (row == sema.library.functions.end()) return callee;
+  const FunctionRule rule = row->second->rule;
+  if (rule != FunctionRule::kString && rule != FunctionRule::kStringNumber) return callee;
+  callee.kind = Callee::Kind::kStandard;
+  callee.row = row->second;
+  callee.wide = true;
+  return callee;
+}
+
+Callee Calls::typed_callee(std::string_view name) const {
+  Callee callee = wide_callee(sema_, name);
+  if (callee.wide) return callee;
   size_t cut = name.rfind('_');
   if (cut == std::string_view::npos) return callee;
   auto row = sema_.library.functions.find(name.substr(0, cut));
@@ -79,6 +96,16 @@ Callee Calls::typed_callee(std::string_view name) const {
 }
 
 bool Calls::takes_typed(const Callee& callee, const std::vector<ExprId>& args) {
+  const uint32_t texts = callee.wide ? string_arguments(*callee.row, args.size()) : 0;
+  for (uint32_t i = 0; i < texts; ++i) {
+    const ir::TypeId type = infer(args[i]).type;
+    if (sema_.program.types[type].kind == ir::Kind::kWstring) continue;
+    error(DiagnosticCode::kWrongArgument, sema_.tree[args[i]].span,
+          "argument " + std::to_string(i + 1) + " is `" + sema_.report.type_text(type) +
+              "`, not `WSTRING`",
+          "call " + std::string(callee.row->name) + ", which takes both");
+    return false;
+  }
   if (!callee.typed.valid()) return true;
   Note wanted;
   wanted.type = callee.typed;

@@ -53,11 +53,13 @@ std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
       implicit_fit(types, value.type, target, sema_.options.dialect) == Fit::kNone) {
     return mismatch();
   }
+  const bool narrows = typed && value.literal && sema_.options.dialect == Dialect::kIec &&
+                       implicit_fit(types, value.type, target, Dialect::kIec) == Fit::kNarrowing;
+  if (narrows && !allow_narrowing(value.type, target, span)) return std::nullopt;
   if (value.flex == Flex::kEnum && !is_enum(types, target)) return mismatch();
   if (!typed && value.flex != Flex::kEnum) {
     bool enumeration = to.enumeration && sema_.options.dialect != Dialect::kIec;
-    bool bit = to.boolean && sema_.options.dialect != Dialect::kIec &&
-               (value.integer == 0 || value.integer == 1);
+    bool bit = to.boolean && (value.integer == 0 || value.integer == 1);
     bool number = to.number() || to.bits || enumeration || bit;
     if (!number || (value.form == Constant::Form::kReal && !to.real)) {
       if (value.form != Constant::Form::kReal || !to.integer) return mismatch();

@@ -10,6 +10,7 @@
 #include "frontend/sema/expressions/operators.h"
 #include "frontend/sema/expressions/width.h"
 #include "frontend/sema/types/types.h"
+#include "ir/types/natural_layout.h"
 
 namespace frontend {
 std::optional<Constant> Folder::fold(ExprId id) {
@@ -104,6 +105,14 @@ std::optional<Constant> Folder::call(ExprId id) {
       value.integer = *bound;
       return value;
     }
+    if (callee.reference == ReferenceCall::kSizeof) {
+      const ExprId argument = sema_.tree.args[expr.list.first].value;
+      Constant value;
+      value.flex = Flex::kInteger;
+      value.integer =
+          ir::natural_size(sema_.program.types, ask<Calls>().type_of_argument(argument));
+      return value;
+    }
   }
   return evaluate_constant(sema_, scope_, id, context_);
 }
@@ -157,7 +166,9 @@ std::optional<Constant> Folder::literal(const Expr& expr) {
   }
   auto bits = ask<Constants>().fit(value, type, expr.span);
   if (!bits) return std::nullopt;
-  return of_bits(type, *bits);
+  value = of_bits(type, *bits);
+  value.literal = true;
+  return value;
 }
 
 std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {

@@ -47,7 +47,11 @@ void Collection::collect() {
   collect_pous();
   if (sema_.for_tests()) ask<TestBuild>().collect_tests();
   collect_types();
-  for (const VarBlock& block : sema_.tree.globals) collect_globals(block, list_of(block));
+  const VarBlock* head = nullptr;  // a list that others go on has the attributes of all of them
+  for (const VarBlock& block : sema_.tree.globals) {
+    if (head == nullptr || !block.goes_on) head = &block;
+    collect_globals(block, list_of(*head), *head);
+  }
   for (const ConfigDecl& config : sema_.tree.configs) {
     if (sema_.tree.in_namespace(config.scope)) {
       error(DiagnosticCode::kNotInNamespace, config.name.span,
@@ -267,6 +271,12 @@ void Collection::collect_variables(uint32_t pou, const VarBlock& block) {
   PouInfo& info = sema_.declared.pous[pou];
   if (block.section == VarSection::kAccess) return;
   if (block.section == VarSection::kStatic) allow_extension("VAR_STAT", block.span);
+  if (block.retain && block.section == VarSection::kInOut) {
+    allow_extension("RETAIN on VAR_IN_OUT", block.span, "the caller's variable is RETAIN or not");
+  }
+  if (block.retain && block.section == VarSection::kTemp) {
+    allow_extension("RETAIN on VAR_TEMP", block.span, "declare it in VAR RETAIN");
+  }
   for (const VarDecl& decl : block.vars) {
     if (info.meaning == nullptr) collect_enumerators(decl.spec, info.decl->scope);
     for (const Name& name : decl.names) {

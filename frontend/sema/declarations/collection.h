@@ -29,7 +29,8 @@ class Collection : public Phase {
   void collect_library_type(const TypeDecl& decl);
   void forward_declare(const TypeDecl& decl, std::string_view name);
   void collect_enumerators(SpecId spec, ScopeId scope, Access access = Access::kDefault);
-  void collect_globals(const VarBlock& block, std::string_view list);
+  // `head` has the attributes.
+  void collect_globals(const VarBlock& block, std::string_view list, const VarBlock& head);
   void collect_globals(const std::vector<VarBlock>& blocks, std::string_view list);
   std::string_view list_of(const VarBlock& block) const;
   void collect_variables(uint32_t pou, const VarBlock& block);

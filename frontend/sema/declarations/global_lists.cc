@@ -16,14 +16,15 @@ std::string_view Collection::list_of(const VarBlock& block) const {
 }
 
 void Collection::collect_globals(const std::vector<VarBlock>& blocks, std::string_view list) {
-  for (const VarBlock& block : blocks) collect_globals(block, list);
+  for (const VarBlock& block : blocks) collect_globals(block, list, block);
 }
 
 // In a namespace, the namespace is the list that variables belong to.
-void Collection::collect_globals(const VarBlock& block, std::string_view list) {
+void Collection::collect_globals(const VarBlock& block, std::string_view list,
+                                 const VarBlock& head) {
   if (block.section != VarSection::kGlobal) return;
   const bool closed = sema_.tree.in_namespace(block.scope);
-  const bool qualified = sema_.tree.find_attribute(block.attributes, "qualified_only") != nullptr;
+  const bool qualified = sema_.tree.find_attribute(head.attributes, "qualified_only") != nullptr;
   if (closed) allow_extension("VAR_GLOBAL in a namespace", block.span);
   const std::string_view list_name =
       sema_.namespaces.declare(NameSort::kList, block.scope, {list, block.span}, block.access);

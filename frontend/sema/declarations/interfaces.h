@@ -16,7 +16,7 @@ class Interfaces : public Phase {
   void resolve_interface(uint32_t pou);
   void finish_programs();  // after all bodies
   // --- declarations (collection.cc, interface.cc, configuration.cc)
-  void report_not_supported();  // not_supported.cc
+  void check_underlines();  // underlines.cc
 
  private:
   void resolve_globals();

@@ -115,8 +115,11 @@ Note Expressions::infer_kind(ExprId, const Expr& expr) {
     case ExprKind::kThis:
     case ExprKind::kSuper:
       return ask<Objects>().infer_this(expr);
+    case ExprKind::kType:
+      error(DiagnosticCode::kNotAValue, expr.span, "a type stands where a value is needed",
+            "only SIZEOF takes a type that has no name");
+      return {};
     case ExprKind::kError:
-    case ExprKind::kType:  // reported by report_not_supported()
       return {};
   }
   return {};

@@ -96,7 +96,7 @@ Note OperatorTypes::unify(const Note& a, const Note& b, base::SourceSpan span) {
       note.type = without_range(types, b.type);
       return note;
     }
-    if (a.flex == Flex::kInteger && other.boolean && sema_.options.dialect != Dialect::kIec) {
+    if (a.flex == Flex::kInteger && other.boolean) {
       note.type = b.type;
       return note;
     }

@@ -71,7 +71,8 @@ TypeUse Types::resolve_reference(const Spec& spec) {
 Note Expressions::infer_deref(const Expr& expr) {
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
-  if (!sema_.program.types.is_reference(operand.type) || operand.flex == Flex::kNull) {
+  const bool null = operand.flex == Flex::kNull && operand.constant;
+  if (!sema_.program.types.is_reference(operand.type) || null) {
     error(DiagnosticCode::kNotReference, expr.span,
           "`" + sema_.report.type_text(operand.type) + "` is not a reference");
     return {};
@@ -105,6 +106,24 @@ Note Expressions::infer_pointer_index(const Expr& expr, const Note& operand) {
   return note;
 }
 
+// A reference outlives what is made anew at each call; the standard takes none to it.
+static void check_lasting(const Phase& phase, ExprId argument) {
+  const Sema& sema = phase.sema();
+  ExprId whole = argument;
+  while (sema.tree[whole].kind == ExprKind::kMember || sema.tree[whole].kind == ExprKind::kIndex) {
+    if (phase.infer(whole).variable.valid()) break;
+    whole = sema.tree[whole].operand;
+  }
+  const VarId id = phase.infer(whole).variable;
+  if (!id.valid()) return;
+  const Variable& variable = sema.declared.variables[id.index];
+  const bool anew = variable.storage == Storage::kLocal || variable.section == VarSection::kTemp;
+  if (!anew || variable.section == VarSection::kInOut) return;
+  phase.error(DiagnosticCode::kBadReference, sema.tree[argument].span,
+              "`" + std::string(variable.name.text) + "` is made anew at each call",
+              "refer to a variable of a program, of an instance, or a global one");
+}
+
 Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   const uint32_t wanted = call == ReferenceCall::kQuery ? 2 : 1;
   if (call == ReferenceCall::kNew && expr.list.count == 2) {
@@ -128,9 +147,12 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   Note note;
   if (call == ReferenceCall::kNew) return ask<Pools>().infer_new(argument);
   if (call == ReferenceCall::kSizeof) {
-    if (!type_of_argument(argument).valid()) return {};
+    const ir::TypeId type = type_of_argument(argument);
+    if (!type.valid()) return {};
     note.type = sema_.program.types.elementary(ir::Kind::kUdint);
     note.flex = Flex::kInteger;
+    // What a block or program has inside is not known before all declarations are.
+    if (!sema_.program.types.is_instance(type)) note.known = Known::kByCall;
     return note;
   }
   const Note& operand = infer(argument);
@@ -149,6 +171,7 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
       note.flex = Flex::kNull;
       return note;
     case ReferenceCall::kRef:
+      if (sema_.options.dialect == Dialect::kIec) check_lasting(*this, argument);
       note.type = sema_.program.types.ref_to(operand.type);
       return note;
     default:

@@ -89,13 +89,17 @@ ir::TypeId compared_type(const Phase& phase, ir::TypeId common,
 }
 
 Note widened_by(const Sema& sema, Note note, ExprId operand) {
-  const Expr& expr = sema.tree[operand];
-  if (note.width != Width::kWide || expr.kind != ExprKind::kLiteral) return note;
-  const Literal& literal = sema.tree.literals[expr.number];
+  const Expr* expr = &sema.tree[operand];
+  const bool negative = note.width == Width::kWraps && expr->kind == ExprKind::kUnary &&
+                        expr->unary == UnaryOp::kNegate;
+  if (negative) expr = &sema.tree[expr->operand];
+  if (note.width == Width::kOwn || expr->kind != ExprKind::kLiteral) return note;
+  const Literal& literal = sema.tree.literals[expr->number];
   if (literal.kind != LiteralKind::kInteger || literal.prefix != kNoNumber) return note;
   const ir::TypeTable& types = sema.program.types;
   const auto value = static_cast<Wide>(literal.integer);
-  if (value <= limits_of(types.scalar(note.type)).high) return note;
+  const Limits limits = limits_of(types.scalar(note.type));
+  if (negative ? -value >= limits.low : value <= limits.high) return note;
   const Wide dint = limits_of(ir::Scalar::kI32).high;
   const Wide lint = limits_of(ir::Scalar::kI64).high;
   note.type = types.elementary(value <= dint   ? ir::Kind::kDint

@@ -82,6 +82,7 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
         return ask<Expressions>().variable_note(id);  // VAR_STAT
       open = variable.section != VarSection::kExternal;
     }
+    open = open || is_read_only(variable);
     if (variable.section == VarSection::kInput || variable.section == VarSection::kOutput || open) {
       sema_.mark_used(id);
       check_access(variable.access, variable.pou, expr.name);
@@ -114,6 +115,36 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
         quoted(block.decl->name) + " has no member " + quoted(expr.name),
         suggestion(owner, expr.name.text));
   return {};
+}
+
+// CODESYS and TwinCAT let others read a VAR; they do not write it.
+bool Objects::is_read_only(const Variable& variable) const {
+  return sema_.options.dialect != Dialect::kIec && !in_test() &&
+         variable.section == VarSection::kLocal && variable.access == Access::kDefault &&
+         variable.storage != Storage::kLocal && variable.method.empty() && !variable.hidden;
+}
+
+// `f.n`, `f.t.IN`, `f.list[3]`: does the way lead through a VAR of another block? Reports.
+bool Objects::refuse_change(ExprId id) {
+  for (ExprId at = id; at.valid(); at = sema_.tree[at].operand) {
+    const Expr& expr = sema_.tree[at];
+    const bool part = expr.kind == ExprKind::kIndex || expr.kind == ExprKind::kBit;
+    if (part && !sema_.program.types.is_reference(infer(expr.operand).type)) continue;
+    if (expr.kind != ExprKind::kMember) return false;
+    if (infer(at).reference.valid() && at != id) return false;
+    if (sema_.namespaces.is_scope(scope_, sema_.tree[expr.operand]) ||
+        is_own(sema_.tree[expr.operand]))
+      return false;
+    const uint32_t owner = receiver(expr.operand);
+    const VarId variable = owner == kNoPou ? VarId() : find_variable(owner, expr.name.text);
+    if (!variable.valid() || !is_read_only(resolve(variable))) continue;
+    error(DiagnosticCode::kNotAssignable, expr.name.span,
+          quoted(expr.name) + " is private to " + quoted(sema_.declared.pous[owner].decl->name) +
+              ", and others only read it",
+          "declare it as VAR_INPUT to set it from outside");
+    return true;
+  }
+  return false;
 }
 
 VarId Objects::value_of(const PouInfo& accessor) const {

@@ -51,6 +51,8 @@ class Objects : public Phase {
   // --- expressions (receivers.cc)
   // THIS, THIS^, SUPER, SUPER^: the own instance.
   bool is_own(const Expr& expr) const;
+  // Would a write to it, or a call of it, change what others only read? Reports.
+  bool refuse_change(ExprId id);
   bool is_super(const Expr& expr) const;
   // The block or interface that the members after `operand.` are of; kNoPou: it has no such,
   // or none that could be found out (then a message was given).
@@ -107,6 +109,8 @@ class Objects : public Phase {
   // overriding.cc
   void check_names(const PouInfo& info);
   void check_member(const PouInfo& info, const PouDecl& decl);
+  bool is_read_only(const Variable& variable) const;
+  void check_words(const PouInfo& method, const PouInfo& replaced) const;
   void check_override(const PouInfo& method, const Found& inherited, uint32_t MemberCode::*slot);
   bool check_signature(const PouInfo& method, const PouInfo& wanted, DiagnosticCode code);
   void check_abstract(const PouInfo& info);

@@ -17,6 +17,22 @@ uint32_t MemberCode::*slot_of(const PouDecl& member) {
                                            : &MemberCode::method;
 }
 
+// Who may use it: the more, the higher. Without a word a method is PROTECTED in the standard.
+int openness(Access access) {
+  switch (access) {
+    case Access::kPrivate:
+      return 0;
+    case Access::kDefault:
+    case Access::kProtected:
+      return 1;
+    case Access::kInternal:
+      return 2;
+    case Access::kPublic:
+      return 3;
+  }
+  return 3;
+}
+
 const char* slot_text(uint32_t MemberCode::*slot) {
   return slot == &MemberCode::getter   ? "GET of property "
          : slot == &MemberCode::setter ? "SET of property "
@@ -107,12 +123,27 @@ void Objects::check_override(const PouInfo& method, const Found& inherited,
         "give the method another name");
     return;
   }
+  if (sema_.options.dialect == Dialect::kIec && !accessor) check_words(method, replaced);
   check_signature(method, replaced, DiagnosticCode::kBadOverride);
   for (uint32_t at = inherited.owner; at != kNoPou; at = sema_.declared.pous[at].base) {
     auto found = sema_.declared.pous[at].code.find(name.text);
     if (found == sema_.declared.pous[at].code.end() || found->second.*slot == kNoPou) continue;
     sema_.declared.pous[found->second.*slot].overrides.push_back(method.number);
   }
+}
+
+// What the standard asks of a method that replaces another one (edition 3, 6.6.5.5).
+void Objects::check_words(const PouInfo& method, const PouInfo& replaced) const {
+  const Name& name = method.decl->name;
+  const std::string whose = full_name(sema_.declared.pous[replaced.owner], name);
+  if (!method.decl->is_override) {
+    error(DiagnosticCode::kBadOverride, name.span,
+          quoted(name) + " replaces " + whose + " without OVERRIDE", "write METHOD OVERRIDE");
+  }
+  if (openness(method.decl->access) >= openness(replaced.decl->access)) return;
+  error(DiagnosticCode::kBadOverride, name.span,
+        quoted(name) + " is seen by fewer than " + whose + ", which it replaces",
+        "give it the same word: PUBLIC, INTERNAL or PROTECTED");
 }
 
 // Virtual calls pass arguments by the prototype: order, kind, type and name must agree.
@@ -194,6 +225,15 @@ void Objects::check_implements(const PouInfo& info, const PouInfo& interface) {
     }
     const PouInfo& method = sema_.declared.pous[found.code.*slot];
     prototype.overrides.push_back(method.number);
+    const Access access = method.decl->access;
+    if (sema_.options.dialect == Dialect::kIec &&
+        (access == Access::kPrivate || access == Access::kProtected)) {
+      error(DiagnosticCode::kNotImplemented, method.decl->name.span,
+            quoted(method.decl->name) +
+                (access == Access::kPrivate ? " is PRIVATE" : " is PROTECTED") + ", but " +
+                quoted(interface.decl->name) + " lets everybody call it",
+            "write METHOD PUBLIC");
+    }
     if (found.owner == info.number || !inherits(info, interface)) {
       check_signature(method, prototype, DiagnosticCode::kNotImplemented);
     }

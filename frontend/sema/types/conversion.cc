@@ -115,6 +115,15 @@ std::optional<Kind> kind_of_name(std::string_view name) {
   return found->second;
 }
 
+std::optional<Kind> kind_of_address_name(std::string_view name) {
+  if (ir::same_name(name, "PVOID")) return Kind::kUlint;
+  if (name.size() > 2 && name.substr(0, 2) == "__") name.remove_prefix(2);
+  if (ir::same_name(name, "XINT")) return Kind::kLint;
+  if (ir::same_name(name, "UXINT")) return Kind::kUlint;
+  if (ir::same_name(name, "XWORD")) return Kind::kLword;
+  return std::nullopt;
+}
+
 bool is_enum(const ir::TypeTable& types, ir::TypeId type) {
   type = without_range(types, type);
   return type.valid() && types[type].kind == Kind::kEnum;

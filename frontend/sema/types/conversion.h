@@ -12,6 +12,8 @@ namespace frontend {
 
 // Elementary types under all their names (TOD, DT, ...), STRING and WSTRING.
 std::optional<ir::Kind> kind_of_name(std::string_view name);
+// XINT, __UXINT, PVOID, ...: integers of the width of an address, in CODESYS and TwinCAT.
+std::optional<ir::Kind> kind_of_address_name(std::string_view name);
 // STRING or WSTRING without a length.
 inline constexpr uint32_t kDefaultStringCapacity = 80;
 

@@ -31,6 +31,12 @@ bool take_back(std::string_view& text, std::string_view word) {
   return true;
 }
 
+// DINT, and UXINT in TO_UXINT, which no other function could be called.
+std::optional<Kind> kind_of_conversion(std::string_view name) {
+  const auto kind = kind_of_name(name);
+  return kind ? kind : kind_of_address_name(name);
+}
+
 // `from` is empty when any source will do.
 std::optional<Conversion> between(std::string_view from, std::string_view to) {
   Conversion conversion;
@@ -40,8 +46,8 @@ std::optional<Conversion> between(std::string_view from, std::string_view to) {
     conversion.bcd = Conversion::Bcd::kTo;
   }
   conversion.any_source = from.empty() || ir::same_name(from, "ANY");
-  auto source = conversion.any_source ? Kind::kBool : kind_of_name(from);
-  auto target = kind_of_name(to);
+  auto source = conversion.any_source ? Kind::kBool : kind_of_conversion(from);
+  auto target = kind_of_conversion(to);
   if (!source || !target) return std::nullopt;
   conversion.from = *source;
   conversion.to = *target;
@@ -61,8 +67,8 @@ std::optional<Conversion> between(std::string_view from, std::string_view to) {
 }
 
 std::optional<Conversion> truncation(std::string_view from, std::string_view to) {
-  auto source = from.empty() ? Kind::kReal : kind_of_name(from);
-  auto target = kind_of_name(to);
+  auto source = from.empty() ? Kind::kReal : kind_of_conversion(from);
+  auto target = kind_of_conversion(to);
   if (!source || !target || ir::elementary_group(*source) != Group::kReal ||
       !is_integer_kind(*target)) {
     return std::nullopt;

@@ -92,10 +92,12 @@ TypeUse Types::resolve_struct(SpecId id, const Spec& spec) {
 bool Types::add_base(StructBuild& build, const Spec& spec) {
   TypeUse base = resolve_type(spec.element);
   if (!base.type.valid()) return false;
-  if (!ir::is_structure(sema_.program.types[base.type].kind)) {
+  const bool unions = build.type.kind == ir::Kind::kUnion;
+  if (sema_.program.types[base.type].kind != build.type.kind) {
     error(DiagnosticCode::kTypeMismatch, sema_.tree[spec.element].span,
           "`" + sema_.report.type_text(base.type) +
-              "` is no structure; only structures can be extended");
+              (unions ? "` is no union; a union extends unions only"
+                      : "` is no structure; only structures can be extended"));
     return false;
   }
   build.type.members = sema_.program.types[base.type].members;

@@ -89,6 +89,11 @@ std::optional<TypeUse> Types::find_type(std::string_view name) {
   if (auto known = sema_.declared.types.find(name); known != sema_.declared.types.end()) {
     return Types(sema_).resolve_type(known->second);
   }
+  if (!declared_pou && sema_.options.dialect != Dialect::kIec) {
+    if (auto kind = kind_of_address_name(name)) {
+      return TypeUse{sema_.program.types.elementary(*kind), {}};
+    }
+  }
   if (!sema_.declared.pou_names.contains(name) && !ask<Collection>().use_library(name))
     return std::nullopt;
   const PouInfo& pou = sema_.declared.pous[sema_.declared.pou_names.find(name)->second];
