@@ -7,6 +7,7 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/targets.h"
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/objects/pools.h"
 
 namespace frontend {
 
@@ -103,13 +104,15 @@ ir::Place Assignments::assignment_place(ExprId id, const Expr& expr) {
 
 void Assignments::assign_aggregate(const Target& to, ExprId value) {
   const Expr& expr = tree_[value];
-  if (types().is_instance(to.type)) {
+  const bool held = ask<Pools>().holds_instance(to.type);
+  const bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit;
+  if (held && (list || sema_.options.dialect == Dialect::kIec)) {
     error(DiagnosticCode::kNotAssignable, expr.span,
           "instances of `" + sema_.report.type_text(to.type) + "` cannot be assigned",
           "copy the variables that matter one by one");
     return;
   }
-  if (expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit) {
+  if (list) {
     ir::ConstId init = ask<Constants>().initial_value(value, to.type, {}, Known::kByCall);
     if (init.valid()) build_.init(to.place, init);
     return;
@@ -128,7 +131,9 @@ void Assignments::assign_aggregate(const Target& to, ExprId value) {
     if (!text || !ask<Constants>().fit_text(*text, to.type, expr.span)) return;
   }
   ir::Place from = place(value);
-  build_.copy(to.place, from);
+  if (!held) return build_.copy(to.place, from);
+  set_line(expr.span);
+  copy_held(to.place, from, to.type);
 }
 
 }  // namespace frontend

@@ -15,6 +15,8 @@ class Assignments : public BodyPhase {
   void assign(const Stmt& stmt);
   std::optional<Target> assign_value(ExprId left, ExprId right, base::SourceSpan span);
   void assign_aggregate(const Target& target, ExprId value);
+  // copy_instance.cc: all that an instance, or a value with instances inside, holds.
+  void copy_held(const ir::Place& to, const ir::Place& from, ir::TypeId type);
   ir::ValueId emit_assignment(const Expr& expr);
   ir::Place assignment_place(ExprId id, const Expr& expr);
 

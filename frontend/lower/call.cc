@@ -164,9 +164,44 @@ ir::ValueId CallCode::emit_call(const Expr& expr, const Callee& callee, ir::Type
       return ask<Conversions>().emit_conversion(expr, callee.conversion);
     case Callee::Kind::kReference:
       return ask<References>().emit_reference_call(expr, callee.reference, own);
+    case Callee::Kind::kBound:
+      return emit_bound(expr, callee.upper);
     default:
       return code_.zero(own);
   }
+}
+
+// UPPER_BOUND(a, n), where only the code knows n.
+ir::ValueId CallCode::emit_bound(const Expr& call, bool upper) {
+  constexpr ir::Scalar kI64 = ir::Scalar::kI64;
+  constexpr ir::Scalar kU64 = ir::Scalar::kU64;
+  const ir::TypeId array = infer(tree_.args[call.list.first].value).type;
+  const std::vector<ir::Dimension> dims = types()[array].dims;
+  const Typed given = natural(tree_.args[call.list.first + 1].value);
+  const ir::ValueId number = code_.machine_convert(given.value, scalar(given.type), kI64);
+  const ir::ValueId first = build_.constant(kI64, 1);
+  // As one unsigned comparison: below 1 it is huge.
+  const ir::ValueId at =
+      build_.unary(ir::Op::kWrap, kU64, build_.binary(ir::Op::kSub, kI64, number, first));
+  const ir::BlockId good = build_.new_block();
+  const ir::BlockId bad = build_.new_block();
+  build_.branch(build_.compare(ir::Op::kLt, kU64, at, build_.constant(kU64, dims.size())), good,
+                bad);
+  build_.start(bad);
+  build_.trap(ir::TrapKind::kIndex);
+  build_.start(good);
+  ir::ValueId bound;
+  for (size_t i = dims.size(); i-- > 0;) {
+    const int64_t one = upper ? dims[i].high : dims[i].low;
+    const ir::ValueId value = build_.constant(ir::Scalar::kI32, static_cast<uint64_t>(one));
+    if (!bound.valid()) {
+      bound = value;
+      continue;
+    }
+    const ir::ValueId here = build_.compare(ir::Op::kEq, kU64, at, build_.constant(kU64, i));
+    bound = build_.select(ir::Scalar::kI32, here, bound, value);
+  }
+  return bound;
 }
 
 // A result that is no scalar.

@@ -23,6 +23,7 @@ class CallCode : public BodyPhase {
   void call_instance(const Expr& call, uint32_t pou);
   void call_base(const Expr& call, uint32_t pou);
   void check_result_use(const Expr& call);
+  ir::ValueId emit_bound(const Expr& call, bool upper);
 };
 
 }  // namespace frontend

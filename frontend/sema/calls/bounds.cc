@@ -1,12 +1,34 @@
 // LOWER_BOUND and UPPER_BOUND: known when compiling, since each call of a function with
-// ARRAY[*] has its own instance.
+// ARRAY[*] has its own instance. The dimension may be a variable.
 #include "frontend/sema/calls/calls.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
 
+// Which dimension is meant is known when the code runs.
+static bool has_open_dimension(const Phase& phase, const Expr& expr) {
+  const Sema& sema = phase.sema();
+  if (expr.list.count != 2) return false;
+  const ExprId array = sema.tree.args[expr.list.first].value;
+  const ExprId number = sema.tree.args[expr.list.first + 1].value;
+  if (!array.valid() || !number.valid()) return false;
+  const ir::TypeId type = phase.infer(array).type;
+  const Note& dimension = phase.infer(number);
+  const Traits traits = traits_of(sema.program.types, dimension.type);
+  return type.valid() && sema.program.types[type].kind == ir::Kind::kArray &&
+         dimension.known < Known::kByCall && (traits.integer || traits.bits);
+}
+
 Note Calls::infer_bound(const Expr& expr, bool upper) {
+  if (has_open_dimension(*this, expr)) {
+    const Note& dimension = infer(sema_.tree.args[expr.list.first + 1].value);
+    Note note;
+    note.type = sema_.program.types.elementary(ir::Kind::kDint);
+    note.calls = dimension.calls;
+    note.can_trap = true;
+    return note;
+  }
   if (!bound_of(expr, upper)) return {};
   Note note;
   note.type = sema_.program.types.elementary(ir::Kind::kDint);

@@ -212,14 +212,24 @@ void InstancePaths::configure_variable(const VarDecl& decl) {
   if (decl.has_address && !decl.incomplete) {
     bool open =
         path.address.bit_offset == ir::kOpenAddress && path.address.area == decl.address.area;
-    std::string problem = open ? ask<Variables>().address_problem(path.type, decl.address, false)
-                               : "is not declared with AT %I*, %Q* or %M* of this area";
+    const bool plain = path.address.area == ir::DirectArea::kNone &&
+                       decl.address.area == ir::DirectArea::kMarker &&
+                       sema_.options.dialect != Dialect::kIec;
+    std::string problem = open || plain
+                              ? ask<Variables>().address_problem(path.type, decl.address, false)
+                              : "is not declared with AT %I*, %Q* or %M* of this area";
     if (!problem.empty()) {
       error(DiagnosticCode::kBadAddress, decl.span, "`" + path.text + "` " + problem);
       return;
     }
-    sema_.program.located.push_back({path.text, decl.address});
-    sema_.addresses.configured.push_back({decl.address, path.type, decl.span, path.text, true});
+    if (plain) {
+      warning(DiagnosticCode::kAddressNotAsked, decl.span,
+              "`" + path.text + "` is not declared with AT %M* and keeps a place of its own",
+              "declare it with AT %M* to find it at the marker");
+    } else {
+      sema_.program.located.push_back({path.text, decl.address});
+      sema_.addresses.configured.push_back({decl.address, path.type, decl.span, path.text, true});
+    }
   }
   if (!decl.init.valid()) return;
   if (path.fixed) {
