@@ -186,8 +186,6 @@ void TaskTables::compare_outputs(TaskTables& a, TaskTables& b) {
   a.same_outputs = b.same_outputs = same;
 }
 
-// Phases that a change left between periods that do not fit could make the cycle too short: then
-// all tasks get one phase.
 uint64_t TaskTables::missed_releases() const {
   uint64_t missed = 0;
   for (const TaskSlot& task : tasks) missed += task.status.missed;
@@ -204,6 +202,8 @@ uint64_t TaskTables::load() const {
   return load;
 }
 
+// Phases that a change left between periods that do not fit could make the cycle too short: then
+// all tasks get one phase.
 void TaskTables::set_base_period() {
   find_base_period();
   if (base_period_ns >= static_cast<int64_t>(base::kMinBaseCycleNs)) return;
