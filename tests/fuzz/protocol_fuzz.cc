@@ -1,13 +1,17 @@
 // The control channel with any bytes: requests, answers, and what a client makes of a controller
 // that answers what it likes.
 //
-// An input is {what, bytes}: a request, or the answer of each request of one call.
+// An input is {what, bytes}: a request, the answer of each request of one call, the conditions of a
+// trial (X6-03) as a tool sends them, or one as people write it.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "base/check.h"
+#include "tools/stvm/condition_parse.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/event_text.h"
 #include "vm/runtime/protocol.h"
@@ -48,20 +52,68 @@ void check_request(base::ByteSpan bytes) {
   base::check(again == base::Bytes(bytes.begin(), bytes.end()), "a request is exact");
 }
 
+// What is taken computes, whatever the variables are.
+void compute_all(const stvm::GuardOrder& order) {
+  using Value = stvm::ConditionValue;
+  for (uint8_t round = 0; round < 3; ++round) {
+    std::vector<stvm::ConditionVariable> variables(order.names.size());
+    std::vector<Value> now(order.names.size());
+    std::vector<Value> baseline(order.names.size());
+    const uint8_t memory[8] = {round, 0xff, 0x7f, round, 0x80, 0xff, 0x7f, round};
+    for (size_t i = 0; i < variables.size(); ++i) {
+      const auto kind = static_cast<size_t>(ir::Kind::kLreal) + 1;
+      variables[i].kind = static_cast<ir::Kind>((i * 7 + round * 5) % kind);
+      (void)read_variable(variables[i], memory, now[i]);
+      (void)read_variable(variables[i], memory, baseline[i]);
+    }
+    for (const stvm::Condition& condition : order.conditions) {
+      if (!check_condition(condition, variables).ok()) continue;
+      (void)stvm::compute(condition, now, baseline);
+    }
+  }
+}
+
+void check_order(base::ByteSpan bytes) {
+  const base::Result<stvm::GuardOrder> order = stvm::decode_guard_order(bytes);
+  if (!order.ok()) return;
+  const base::Result<stvm::GuardOrder> again = stvm::decode_guard_order(encode(*order));
+  base::check(again.ok() && encode(*again) == encode(*order), "an order is exact");
+  compute_all(*order);
+}
+
+void check_written(base::ByteSpan bytes) {
+  const std::string text(bytes.begin(), bytes.end());
+  stvm::GuardOrder order;
+  order.deadline_ns = 1;
+  size_t at = 0;
+  if (!stvm::add_condition(text, order, at).ok()) {
+    base::check(at <= text.size(), "a mistake is in the text");
+    return;
+  }
+  compute_all(order);
+  base::check(stvm::decode_guard_order(encode(order)).ok(), "what was written can be sent");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   const base::ByteSpan input(data + 1, size - 1);
-  switch (data[0] % 3) {
+  switch (data[0] % 5) {
     case 0:
       check_request(input);
       break;
     case 1:
       ask_everything(input);
       break;
-    default:
+    case 2:
       ask_everything(vm::encode_answer(input));
+      break;
+    case 3:
+      check_order(input);
+      break;
+    default:
+      check_written(input);
   }
   return 0;
 }
