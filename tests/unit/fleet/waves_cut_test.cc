@@ -41,6 +41,20 @@ TEST_F(Waves, X602_AToolThatIsKilledAtAnyWriteIsResumed) {
   EXPECT_GT(writes, 30u) << "so many were cut";
 }
 
+// The disk of the tool is full, and the network is well.
+TEST_F(Waves, X602_NothingIsDoneThatCouldNotBeWritten) {
+  make(2, {}, "[roll]\nsoak = \"2s\"\n[[wave]]\ncount = 1\n[[wave]]\ncount = 1\n");
+  stvm::RollPorts full = ports();
+  full.save = [](const stvm::RollPlan&) {
+    return base::Status(base::Error{base::Refusal::kFileUnwritable, "full"});
+  };
+  stvm::FleetRoll roll(plan_, fleet_.edit(), access(), full);
+  const base::Status ended = roll.run();
+  ASSERT_FALSE(ended.ok());
+  EXPECT_EQ(ended.error().text, "full");
+  EXPECT_EQ(switches(1), 0);
+}
+
 // Killed between any two messages.
 TEST_F(Waves, X602_AToolThatIsKilledAtAnyMessageIsResumed) {
   for (const bool faulty : {false, true}) {
