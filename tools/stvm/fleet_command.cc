@@ -21,7 +21,8 @@ constexpr tools::OptionRow kFleetOptions[] = {
     {"--one-by-one", nullptr, "wait until a controller answers, do it, and wait for the next one"},
     STVM_SWITCH_OPTIONS,
     tools::kMatchingOption,
-    {"--confirm-each-wave", nullptr, "ask before each wave of a roll-out, not only before the first"},
+    {"--confirm-each-wave", nullptr,
+     "ask before each wave of a roll-out, not only before the first"},
     STVM_FORMAT_OPTION,
 };
 
