@@ -40,6 +40,18 @@ ir::Kind instance_kind(PouKind kind) {
   }
 }
 
+// A file with nothing but VAR_GLOBAL, as a GVL of CODESYS and TwinCAT is.
+bool is_list_file(const Sema& sema, const VarBlock& block) {
+  const auto file = sema.sources.file_of(block.span.begin);
+  const auto inside = [&](const auto& declaration) {
+    return sema.sources.file_of(declaration.name.span.begin) == file;
+  };
+  const auto none = [&](const auto& list) {
+    return std::none_of(list.begin(), list.end(), inside);
+  };
+  return none(sema.tree.pous) && none(sema.tree.types) && none(sema.tree.configs);
+}
+
 }  // namespace
 
 void Collection::collect() {
@@ -48,8 +60,15 @@ void Collection::collect() {
   if (sema_.for_tests()) ask<TestBuild>().collect_tests();
   collect_types();
   const VarBlock* head = nullptr;  // a list that others go on has the attributes of all of them
+  std::optional<uint32_t> asked;   // a file, and
+  bool lists_alone = false;        // whether it is a GVL
   for (const VarBlock& block : sema_.tree.globals) {
-    if (head == nullptr || !block.goes_on) head = &block;
+    const uint32_t file = sema_.sources.file_of(block.span.begin);
+    if (block.goes_on && asked != file) {
+      asked = file;
+      lists_alone = is_list_file(sema_, block);
+    }
+    if (head == nullptr || !block.goes_on || !lists_alone) head = &block;
     collect_globals(block, list_of(*head), *head);
   }
   for (const ConfigDecl& config : sema_.tree.configs) {

@@ -67,7 +67,7 @@ const Wrong kWhole[] = {
     {"E4001",
      "FUNCTION_BLOCK F VAR_OUTPUT q : INT; END_VAR END_FUNCTION_BLOCK "
      "PROGRAM P VAR f : F; END_VAR f.q := 1; END_PROGRAM"},
-    {"E2004",
+    {"E4001",
      "FUNCTION_BLOCK F VAR q : INT; END_VAR q := 1; END_FUNCTION_BLOCK "
      "PROGRAM P VAR f : F; END_VAR f.q := 1; END_PROGRAM"},
     {"E4018", "FUNCTION F : INT F := F(); END_FUNCTION"},
@@ -149,7 +149,7 @@ const WrongBody kBodies[] = {
     {"E4017", "r : REAL;", "CASE r OF 1: r := 1; END_CASE"},
     {"E4019", "x : INT;", "TON(); x := x;"},
     {"E4020", "t : TON; b : BOOL;", "t(IN := b, T#1s);"},
-    {"E4001", "t, u : TON;", "t := u; u();"},
+    {"E3001", "t : TON; u : TOF;", "t := u; u();"},
     {"E4006", "x : REAL;", "x := SIN('a');"},
 };
 INSTANTIATE_TEST_SUITE_P(Bodies, RejectsBody, testing::ValuesIn(kBodies));
