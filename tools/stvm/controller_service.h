@@ -81,7 +81,7 @@ class ControllerService : public vm::Service {
   // stored again.
   void keep_up() override;
   int keep_up_ms() const override {
-    return probation_ || guard_.is_on() || watches_unless() ? kProbationLookMs : 1000;
+    return probation_ || guard_.looks_aside() || watches_unless() ? kProbationLookMs : 1000;
   }
   bool stop_wanted() const { return stop_wanted_.load(std::memory_order_acquire); }
   // Who wanted it; after stop_wanted().

@@ -88,13 +88,13 @@ base::Result<base::Bytes> ControllerService::guard(const vm::Request& request) {
 }
 
 void ControllerService::watch_trial() {
-  if (guard_.is_on()) {
+  if (guard_.looks_aside()) {
     if (const auto cause = guard_.look_aside(!store_.complaints().empty())) {
       base::Status failed = look_at_boundary([&] { guard_.fail(*cause); });
       if (!failed.ok()) return;
     }
-    if (guard_.has_failed()) return give_back(guard_.why());
   }
+  if (guard_.has_failed()) return give_back(guard_.why());
   if (!probation_) return;
   if (trials_.empty() || trials_.back().edit.name != probation_->edit) {
     probation_.reset();

@@ -31,7 +31,8 @@ class TrialGuard : public vm::BoundaryWatch {
   // An edit is on trial under it. While it is, nothing is made on top of that.
   bool is_on() const { return state() >= State::kOn; }
   bool has_failed() const { return state() == State::kFailed; }
-  // What can be looked at now and then only: does a device or an alarm speak against it?
+  // Devices and alarms can be looked at now and then only: does one speak against it?
+  bool looks_aside() const { return is_on() && (order_.devices || order_.alarms); }
   std::optional<Cause> look_aside(bool alarm) const;
   // Why it has failed, with values and cycle.
   std::string why() const;

@@ -5,6 +5,8 @@
 namespace stvm {
 namespace {
 
+constexpr uint64_t kMostLoad = 1'000'000;  // percent
+
 constexpr auto guard_step_fields = [](auto& a, auto& step) {
   a.enumerator(step.op, kLastConditionOp);
   a(step.operand);

@@ -284,6 +284,35 @@ TEST(TrialGuard, X603_TheControllerChecksWhatItIsSent) {
   EXPECT_FALSE(rig.plc.ask(longer).ok());
 }
 
+// Whatever becomes of the bytes: refused, or conditions that end.
+TEST(TrialGuard, X603_DamagedOrdersAreRefusedOrHarmless) {
+  const ir::VerifiedImage image = plc::build(watched_program(""));
+  const base::Bytes whole =
+      encode(order_of({"Main.errors <= baseline(Main.errors) + 2 AND NOT (Main.rate > 0.5)",
+                       "MIN(Main.n, 3) MOD 2 = ABS(-1)"}));
+  EXPECT_EQ(base::short_hex(base::sha256(whole)), "d0d6bacc8e34")
+      << "what newer tools send grows at its end";
+  size_t computed = 0;
+  const std::vector<ConditionValue> values(kMostConditionNames);
+  const auto look = [&](const base::Bytes& bytes) {
+    base::Result<GuardOrder> order = decode_guard_order(bytes);
+    if (!order.ok() || !TrialGuard::check(*order, image.image()).ok()) return;
+    for (const Condition& condition : order->conditions) {
+      (void)compute(condition, values, values);
+      ++computed;
+    }
+  };
+  for (size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_FALSE(decode_guard_order(base::ByteSpan(whole).first(i)).ok()) << i;
+    for (int bit = 0; bit < 8; ++bit) {
+      base::Bytes flipped = whole;
+      flipped[i] = static_cast<uint8_t>(flipped[i] ^ (1u << bit));
+      look(flipped);
+    }
+  }
+  EXPECT_GT(computed, 100u);
+}
+
 // A second roll-out, and anybody else: nothing is made on top of a trial that is watched.
 TEST(TrialGuard, X605_NothingIsMadeOnTopOfIt) {
   GuardRig rig;
