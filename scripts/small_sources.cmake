@@ -71,7 +71,9 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/bytecode/image_queries.cc ${CMAKE_SOURCE_DIR}/vm/runtime/live_copy.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/mailbox.cc ${CMAKE_SOURCE_DIR}/vm/runtime/event_ring.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/frames.cc ${CMAKE_SOURCE_DIR}/vm/runtime/safe_outputs.cc
-     ${CMAKE_SOURCE_DIR}/vm/load/truth_tables.cc)
+     ${CMAKE_SOURCE_DIR}/vm/load/truth_tables.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/image.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/regions.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/value_ranges.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_checks.cc)
 # Where a native version spends its time while it is made.
 foreach(name facts allocate allocator_state uses forward simplify numbers)
   list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)
