@@ -76,7 +76,7 @@ said 'E3001.*is a program'
 echo 'PROGRAM q ADVANCE_TIME(T#1s); Main.n := 5; END_PROGRAM' >q.st
 expect 1 stc check pump.st q.st
 said 'E8002.*is for tests only'
-said 'E2004.*`n` is private to `Main`'
+said 'E4001.*`n` is private to `Main`, and others only read it'
 
 # Assertions compare as expressions do: what is computed below 32 bits is a DINT (docs/LANGUAGE.md).
 wrong "TEST 'a' VAR a : INT := 20000; END_VAR ASSERT_EQ(a * 3, a); END_TEST" \

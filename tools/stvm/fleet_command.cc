@@ -59,10 +59,11 @@ int hand_over(const tools::Options& options) {
 
 const tools::Command kFleetCommand{
     "fleet",
-    "change|undo|accept|continue|status|diff|roll|resume|abort|watch [FILE|PLAN|A B]",
-    "Makes the edit of a fleet file (stc fleet) on many controllers, takes it back or accepts it,\n"
-    "goes on with those left, or says who has what of it, and what differs between them. Rolls it\n"
-    "out by waves, and resumes, aborts or watches that.",
+    "VERB [FILE|PLAN|A B]",
+    "Makes the edit of a fleet file (stc fleet) on many controllers (VERB: change), takes it back\n"
+    "(undo) or accepts it (accept), goes on with those left (continue), or says who has what of it\n"
+    "(status) and what differs between them (diff). Brings it by waves (roll), goes on with that\n"
+    "(resume), takes it back (abort), or shows it (watch).",
     kFleetOptions,
     1,
     3};
