@@ -16,6 +16,7 @@ namespace {
 // Rows of all pages together; what a controller may send is bounded.
 constexpr size_t kMaxRows = 20'000'000;
 constexpr size_t kMaxEvents = 65'536;  // a journal has 1,280 of them, a controller 2,048
+constexpr size_t kLeastPart = 4096;  // bytes of an image, of each part but the last
 
 base::Error endless() {
   return {base::Refusal::kProtocol, "message not understood: pages without end"};
@@ -170,7 +171,7 @@ base::Result<base::Bytes> ControllerClient::image_parts(vm::Request request,
     all.insert(all.end(), part->bytes.begin(), part->bytes.end());
     if (part->total > base::kMaxImageBytes || all.size() > part->total) return endless();
     if (all.size() == part->total) return all;
-    if (part->bytes.empty()) return endless();
+    if (part->bytes.size() < kLeastPart) return endless();
   }
 }
 

@@ -60,10 +60,10 @@ int hand_over(const tools::Options& options) {
 const tools::Command kFleetCommand{
     "fleet",
     "VERB [FILE|PLAN|A B]",
-    "Makes the edit of a fleet file (stc fleet) on many controllers (VERB: change), takes it back\n"
-    "(undo) or accepts it (accept), goes on with those left (continue), or says who has what of it\n"
-    "(status) and what differs between them (diff). Brings it by waves (roll), goes on with that\n"
-    "(resume), takes it back (abort), or shows it (watch).",
+    "Makes the edit of a fleet file (stc fleet) on many controllers (VERB: change), takes it\n"
+    "back (undo) or accepts it (accept), goes on with those left (continue), or says who has\n"
+    "what of it (status) and what differs between them (diff). Brings it by waves (roll), goes\n"
+    "on with that (resume), takes it back (abort), or shows it (watch).",
     kFleetOptions,
     1,
     3};

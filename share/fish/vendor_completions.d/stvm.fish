@@ -22,10 +22,10 @@ complete -c stvm -n __fish_use_subcommand -f -a journal -d 'Shows the events tha
 and when, power cuts, and traps; oldest first. `stvm events` shows all of one that runs.'
 complete -c stvm -n __fish_use_subcommand -f -a events -d 'Shows what happens to a running controller: starts, changes, traps, overruns, devices, forces
 and writes; oldest first. Those of before it started come from its journal.'
-complete -c stvm -n __fish_use_subcommand -f -a fleet -d 'Makes the edit of a fleet file (stc fleet) on many controllers (VERB: change), takes it back
-(undo) or accepts it (accept), goes on with those left (continue), or says who has what of it
-(status) and what differs between them (diff). Brings it by waves (roll), goes on with that
-(resume), takes it back (abort), or shows it (watch).'
+complete -c stvm -n __fish_use_subcommand -f -a fleet -d 'Makes the edit of a fleet file (stc fleet) on many controllers (VERB: change), takes it
+back (undo) or accepts it (accept), goes on with those left (continue), or says who has
+what of it (status) and what differs between them (diff). Brings it by waves (roll), goes
+on with that (resume), takes it back (abort), or shows it (watch).'
 complete -c stvm -n __fish_use_subcommand -f -a source -d 'Brings back the sources that travel with the running program.'
 complete -c stvm -n __fish_use_subcommand -f -a image -d 'Writes the running program to a file.'
 complete -c stvm -n __fish_use_subcommand -f -a bridge -d 'Connects its standard streams to the controller (what --host runs there).'

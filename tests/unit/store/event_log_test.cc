@@ -391,5 +391,27 @@ TEST(EventFilter, R10_LevelsAreThatOneAndAbove) {
   EXPECT_TRUE(EventFilter::parse("", "", 0)->shows(event(Event::kSet)));
 }
 
+// A controller that sends an image a byte at a time.
+class Dripping : public vm::Transport {
+ public:
+  explicit Dripping(int& parts) : parts_(parts) {}
+  base::Result<base::Bytes> exchange(base::ByteSpan) override {
+    ++parts_;
+    return vm::encode_answer(encode(vm::ImagePart{{}, uint64_t{1} << 29, {1}}));
+  }
+
+ private:
+  int& parts_;
+};
+
+TEST(ImageClient, PartsOfAByteAreNotUnderstood) {
+  int parts = 0;
+  ControllerClient client(std::make_unique<Dripping>(parts));
+  const auto image = client.image_before();
+  ASSERT_FALSE(image.ok());
+  EXPECT_EQ(image.error().refusal, base::Refusal::kProtocol);
+  EXPECT_EQ(parts, 1);
+}
+
 }  // namespace
 }  // namespace stvm
