@@ -70,4 +70,10 @@ std::string visible_lines(std::string_view text) {
   return out + visible(text);
 }
 
+std::string_view whole_characters(std::string_view text, size_t limit) {
+  if (text.size() <= limit) return text;
+  while (limit > 0 && (static_cast<uint8_t>(text[limit]) & 0xc0) == 0x80) --limit;
+  return text.substr(0, limit);
+}
+
 }  // namespace base

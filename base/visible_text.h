@@ -14,6 +14,10 @@ std::string visible(std::string_view text);
 // The same for text of several lines, which stay lines.
 std::string visible_lines(std::string_view text);
 
+// The begin of `text`, of at most `limit` bytes, that ends after a whole character of UTF-8. A part
+// of `text`; allocates nothing.
+std::string_view whole_characters(std::string_view text, size_t limit);
+
 // The character that `text` begins with, where it is one that nobody sees and that changes the
 // order in which others are shown (marks, embeddings, overrides and isolates of Unicode's
 // bidirectional algorithm): it takes three bytes of UTF-8, or two. 0: another one.

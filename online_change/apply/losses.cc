@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/visible_text.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/types/address_text.h"
 #include "online_change/apply/live_value.h"
@@ -75,9 +76,7 @@ bool is_constant_already(const ir::Image& old_image, const ir::Symbol& before,
 
 std::string shortened(std::string value) {
   if (value.size() <= kShownBytes) return value;
-  size_t end = kShownBytes;
-  while (end > 0 && (static_cast<uint8_t>(value[end]) & 0xc0) == 0x80) --end;  // UTF-8
-  return value.substr(0, end) + "...";
+  return std::string(base::whole_characters(value, kShownBytes)) + "...";
 }
 
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/crc32c.h"
 #include "base/digest_reader.h"
+#include "base/visible_text.h"
 #include "online_change/store/record.h"
 
 namespace online_change {
@@ -19,13 +20,6 @@ constexpr EventRow kRows[] = {
 #include "online_change/store/events.def"
 #undef EVENT
 };
-
-// Whole characters of UTF-8.
-std::string_view cut(std::string_view text, size_t limit) {
-  if (text.size() <= limit) return text;
-  while (limit > 0 && (static_cast<uint8_t>(text[limit]) & 0xc0) == 0x80) --limit;
-  return text.substr(0, limit);
-}
 
 void put_counts(base::ByteWriter& out, const FateCounts& counts) {
   for (uint64_t count :
@@ -57,9 +51,9 @@ base::Bytes encode(const JournalEntry& entry) {
   out.i64(entry.predicted_ns);
   out.i64(entry.measured_ns);
   out.u64(entry.cycle);
-  out.text(cut(entry.who, kMaxWho));
-  out.text(cut(entry.text, kMaxText));
-  out.text(cut(entry.source, kMaxSource));
+  out.text(base::whole_characters(entry.who, kMaxWho));
+  out.text(base::whole_characters(entry.text, kMaxText));
+  out.text(base::whole_characters(entry.source, kMaxSource));
   base::Bytes sector = out.take();
   base::check(sector.size() <= kChecksumAt, "an entry of the journal fits into its sector");
   sector.resize(kSectorBytes);

@@ -2,7 +2,7 @@
 // that answers what it likes.
 //
 // An input is {what, bytes}: a request, the answer of each request of one call, the conditions of a
-// trial (X6-03) as a tool sends them, or one as people write it.
+// trial (X6-03) as a tool sends them, one as people write it, or the file of a plan (X6-02).
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "tools/stvm/condition_parse.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/event_text.h"
+#include "tools/stvm/fleet_plan.h"
 #include "vm/runtime/protocol.h"
 
 namespace {
@@ -94,12 +95,22 @@ void check_written(base::ByteSpan bytes) {
   base::check(stvm::decode_guard_order(encode(order)).ok(), "what was written can be sent");
 }
 
+void check_plan(base::ByteSpan bytes) {
+  const auto plan = stvm::parse_plan("fuzz.plan", std::string(bytes.begin(), bytes.end()));
+  if (!plan.ok()) return;
+  const std::string text = plan_text(*plan);
+  const auto again = stvm::parse_plan("fuzz.plan", text);
+  base::check(again.ok() && plan_text(*again) == text, "a plan is written as it was read");
+  constexpr int64_t kNow = 1'800'000'000'000;
+  base::check(!plan_page(*plan, kNow).empty() && !plan_json(*plan, kNow).empty(), "it is shown");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   const base::ByteSpan input(data + 1, size - 1);
-  switch (data[0] % 5) {
+  switch (data[0] % 6) {
     case 0:
       check_request(input);
       break;
@@ -112,8 +123,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     case 3:
       check_order(input);
       break;
-    default:
+    case 4:
       check_written(input);
+      break;
+    default:
+      check_plan(input);
   }
   return 0;
 }

@@ -51,13 +51,19 @@ class PlanWriter {
   std::string text_ = "# A roll-out: `stvm fleet watch`, `resume` and `abort` take this file.\n";
 };
 
-// Reads them; one that is missing, or of another type, fails.
+// Milliseconds since 1970 that have room in 64 bits as nanoseconds: the year 2255.
+constexpr int64_t kLatestMs = 9'000'000'000'000;
+
+// Reads them; one that is missing, of another type, or negative fails.
 class PlanReader {
  public:
-  PlanReader(const std::string& path, const tools::TomlTable& table) : path_(path), table_(table) {}
+  explicit PlanReader(const tools::TomlTable& table) : table_(table) {}
   void table(const std::string& name) { prefix_ = name + "."; }
   void text(const char* key, std::string& value) { take(key, value); }
-  void number(const char* key, int64_t& value) { take(key, value); }
+  void time(const char* key, int64_t& value) {
+    take(key, value);
+    if (value < 0 || value > kLatestMs) fail(key);
+  }
   template <class T>
   void number(const char* key, T& value) {
     int64_t wide = 0;
@@ -105,7 +111,6 @@ class PlanReader {
     value = *given;
   }
 
-  const std::string& path_;
   const tools::TomlTable& table_;
   std::string prefix_;
   std::string missing_;
@@ -126,9 +131,9 @@ void write_member(PlanWriter& writer, const RollMember& row) {
 void read_member(PlanReader& reader, RollMember& row) {
   reader.text("place", row.member.place);
   reader.name("state", row.state, kStateNames);
-  reader.number("since", row.since_ms);
+  reader.time("since", row.since_ms);
   reader.flag("was_accepted", row.was_accepted);
-  reader.number("silent", row.silent_ms);
+  reader.time("silent", row.silent_ms);
   reader.text("edit", row.edit);
   reader.text("text", row.text);
   reader.digest("from", row.from);
@@ -149,8 +154,8 @@ base::Status read_list(const std::string& file, RollPlan& plan) {
   for (size_t i = 0; i < members->size(); ++i) {
     for (size_t before = 0; before < i; ++before) {
       if ((*members)[before].name != (*members)[i].name) continue;
-      return base::Error{base::Refusal::kUsage, "fleet: two controllers are called `" +
-                                                    (*members)[i].name + "`"};
+      return base::Error{base::Refusal::kUsage,
+                         "fleet: two controllers are called `" + (*members)[i].name + "`"};
     }
   }
   plan.members.clear();
@@ -219,7 +224,7 @@ base::Result<RollPlan> parse_plan(const std::string& path, const std::string& te
   const base::Result<tools::TomlTable> table = tools::parse_toml(path, text);
   if (!table.ok()) return table.error();
   RollPlan plan;
-  PlanReader reader(path, *table);
+  PlanReader reader(*table);
   reader.table("plan");
   reader.text("id", plan.id);
   reader.text("who", plan.who);
@@ -232,7 +237,7 @@ base::Result<RollPlan> parse_plan(const std::string& path, const std::string& te
   reader.flag("confirm_each", plan.confirm_each);
   reader.name("phase", plan.phase, kPhaseNames);
   reader.number("wave", plan.wave);
-  reader.number("soak_from", plan.soak_from_ms);
+  reader.time("soak_from", plan.soak_from_ms);
   reader.text("why", plan.why);
   const auto bad = [&](const std::string& what) {
     return base::Error{base::Refusal::kBadProject,

@@ -22,6 +22,7 @@ constexpr int64_t kLongestMs = 366LL * 86'400'000;
 constexpr int64_t kMostParallel = 256;
 constexpr int64_t kMostControllers = 100'000;
 constexpr int64_t kMsOfAPlan = 600'000;  // for the way between two waves
+constexpr int64_t kLongestDeadlineMs = 100 * kLongestMs;  // has room in 64 bits as nanoseconds
 
 class RollReader {
  public:
@@ -234,7 +235,7 @@ class RollReader {
     int64_t later = 0;
     for (auto wave = out_.waves.rbegin(); wave != out_.waves.rend(); ++wave) {
       const int64_t own = 2 * wave->soak_ms + kMsOfAPlan;
-      later += own;
+      later = std::min(later + own, kLongestDeadlineMs);
       if (wave->deadline_ms == 0) wave->deadline_ms = wave->accept_at_end ? later : own;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/joined.h"
+#include "base/visible_text.h"
 #include "tools/stvm/trap_text.h"
 
 namespace stvm {
@@ -165,8 +166,8 @@ std::string TrialGuard::why() const {
       const char* const is = computed_ == Computed::kFalse    ? "` is FALSE"
                              : computed_ == Computed::kByZero ? "` divides by zero"
                                                               : "` has no room in 64 bits";
-      text = base::joined(
-          {"`", condition.text.substr(0, kShownText), is, at, ": ", values_text(condition)});
+      text = base::joined({"`", base::whole_characters(condition.text, kShownText), is, at, ": ",
+                           values_text(condition)});
       break;
     }
     case Cause::kDeadline:

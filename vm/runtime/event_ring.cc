@@ -3,14 +3,12 @@
 #include <chrono>
 #include <cstring>
 
+#include "base/visible_text.h"
+
 namespace vm {
 
 FixedText& FixedText::add(std::string_view text) {
-  size_t room = kBytes - size_;
-  if (text.size() > room) {
-    while (room > 0 && (static_cast<uint8_t>(text[room]) & 0xc0) == 0x80) --room;
-    text = text.substr(0, room);
-  }
+  text = base::whole_characters(text, kBytes - size_);
   std::memcpy(bytes_.data() + size_, text.data(), text.size());
   size_ += text.size();
   return *this;

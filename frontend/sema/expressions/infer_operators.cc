@@ -243,18 +243,24 @@ Note OperatorTypes::infer_arithmetic(BinaryOp op, const Note& left, const Note& 
     Traits traits = traits_of(sema_.program.types, note.type);
     bool number = traits.number() || (traits.bits && sema_.options.dialect != Dialect::kIec);
     const bool of_enumeration = traits.enumeration && sema_.options.dialect != Dialect::kIec;
-    if (of_enumeration)
+    if (of_enumeration) {
       note.type = sema_.program.types[without_range(sema_.program.types, note.type)].base;
+    }
     if (of_enumeration || (number && !(op == BinaryOp::kMod && traits.real))) {
       note.width = width_of(sema_, note, op != BinaryOp::kDiv && op != BinaryOp::kMod);
       return note;
     }
   }
+  report_not_defined(op, left, right, span);
+  return {};
+}
+
+void OperatorTypes::report_not_defined(BinaryOp op, const Note& left, const Note& right,
+                                       base::SourceSpan span) {
   error(DiagnosticCode::kBadOperand, span,
         std::string(operator_text(op)) + " is not defined for `" +
             sema_.report.type_text(left.type) + "` and `" + sema_.report.type_text(right.type) +
             "`");
-  return {};
 }
 
 // IEC table 30: durations with durations and numbers, points in time with durations,
@@ -291,10 +297,7 @@ Note OperatorTypes::infer_time_arithmetic(BinaryOp op, const Note& left, const N
     note.type = without_range(types, right.type);
     return note;
   }
-  error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" +
-            sema_.report.type_text(left.type) + "` and `" + sema_.report.type_text(right.type) +
-            "`");
+  report_not_defined(op, left, right, span);
   return {};
 }
 

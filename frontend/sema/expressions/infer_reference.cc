@@ -228,10 +228,7 @@ Note OperatorTypes::infer_pointer_arithmetic(BinaryOp op, const Note& left, cons
     note.type = types.elementary(ir::Kind::kDword);
     return note;
   }
-  error(DiagnosticCode::kBadOperand, span,
-        std::string(operator_text(op)) + " is not defined for `" +
-            sema_.report.type_text(left.type) + "` and `" + sema_.report.type_text(right.type) +
-            "`");
+  report_not_defined(op, left, right, span);
   return {};
 }
 

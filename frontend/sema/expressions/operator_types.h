@@ -27,6 +27,8 @@ class OperatorTypes : public Phase {
   Note infer_pointer_arithmetic(BinaryOp op, const Note& left, const Note& right,
                                 base::SourceSpan span);
   ir::TypeId common_reference(const Note& a, const Note& b);
+  // The message.
+  void report_not_defined(BinaryOp op, const Note& left, const Note& right, base::SourceSpan span);
 };
 
 }  // namespace frontend

@@ -131,6 +131,16 @@ TEST(RollSettings, X602_APlanIsReadAsItWasWritten) {
     other[at] = 'X';
     EXPECT_FALSE(stvm::parse_plan("x.plan", other).ok()) << word;
   }
+  // Times are counted from 1970.
+  for (const std::string line : {"since = 0", "silent = 77", "soak_from = 0", "wave = 0"}) {
+    const size_t at = text.find(line);
+    ASSERT_NE(at, std::string::npos) << line;
+    for (const char* number : {"= -9223372036854775807", "= 9223372036854775807"}) {
+      std::string other = text;
+      other.replace(at, line.size(), line.substr(0, line.find('=')) + number);
+      EXPECT_FALSE(stvm::parse_plan("x.plan", other).ok()) << line << number;
+    }
+  }
 }
 
 }  // namespace

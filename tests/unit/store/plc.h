@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "online_change/store/boot.h"
 #include "tools/stvm/controller_service.h"
@@ -57,9 +58,16 @@ class Plc : public vm::Boundary {
   vm::VirtualClock& clock() { return clock_; }
   vm::Service& service() { return *service_; }
   online_change::Store& store() { return *store_; }
+  // What its field devices say of themselves; there are none at first.
+  std::vector<vm::DeviceStatus>& devices() { return io_.devices; }
   const online_change::Boot& found() const { return *boot_; }
 
  private:
+  struct Field : vm::NullIo {
+    std::vector<vm::DeviceStatus> status() const override { return devices; }
+    std::vector<vm::DeviceStatus> devices;
+  };
+
   Outcome run(const std::function<void()>& job, int64_t timeout_ns) override;
   void pause(int64_t) override {
     if (!stands_) controller_->cycle();
@@ -68,7 +76,7 @@ class Plc : public vm::Boundary {
   vm::Storage& storage_;
   bool stands_ = false;
   vm::VirtualClock clock_;
-  vm::NullIo io_;
+  Field io_;
   std::unique_ptr<online_change::Store> store_;
   std::optional<online_change::Boot> boot_;
   std::unique_ptr<vm::Controller> controller_;

@@ -398,5 +398,70 @@ TEST(TrialGuard, X603_MissedReleasesAndLoadCount) {
   }
 }
 
+// A device that was lost before the edit came does not speak against it.
+TEST(TrialGuard, X603_ADeviceThatIsLostCounts) {
+  for (const bool counts : {true, false}) {
+    GuardRig rig;
+    rig.plc.devices().resize(2);
+    rig.plc.devices()[0].state = "online";
+    rig.plc.devices()[1].state = "lost";
+    GuardOrder order = order_of({});
+    order.devices = counts;
+    ASSERT_TRUE(rig.change(edited_program(""), order).ok());
+    EXPECT_EQ(rig.cycles_until_undone(20), 0);
+    rig.plc.devices()[0].state = "lost";
+    EXPECT_EQ(rig.cycles_until_undone(20) > 0, counts);
+    if (counts) expect_noted(rig, "a device is no longer online in cycle");
+  }
+}
+
+TEST(TrialGuard, X603_AnAlarmOfTheStorageCounts) {
+  for (const bool counts : {true, false}) {
+    GuardRig rig;
+    GuardOrder order = order_of({});
+    order.alarms = counts;
+    ASSERT_TRUE(rig.change(edited_program(""), order).ok());
+    EXPECT_EQ(rig.cycles_until_undone(20), 0);
+    rig.disk.fails = [](std::string_view call) {
+      return call == "write" ? sim::Failure::kError : sim::Failure::kNone;
+    };
+    (void)rig.plc.save().ok();
+    (void)rig.plc.save().ok();
+    EXPECT_EQ(rig.cycles_until_undone(20) > 0, counts);
+    rig.disk.fails = nullptr;
+    if (counts) expect_noted(rig, "an alarm of the storage in cycle");
+  }
+}
+
+// A text of a tool that is cut in the journal is cut between characters; names may have such.
+TEST(TrialGuard, X603_NamesOfAllLettersAreKnown) {
+  sim::SimStorage disk;
+  Plc plc(disk);
+  const auto program = [](const char* more) {
+    return std::string("PROGRAM Main VAR Füllstände : INT := 1; ") + more +
+           "END_VAR Füllstände := Füllstände + 1; END_PROGRAM";
+  };
+  ASSERT_TRUE(plc.boot(program("")).ok());
+  ASSERT_TRUE(plc.stage(plc::build(program("m : INT; "), &plc.controller().image())).ok());
+  GuardOrder order =
+      order_of({"Main.Füllstände <= baseline(Main.Füllstände) + 2 AND           "
+                "Main.Füllstände > 0"});
+  vm::Request guard{.command = vm::Command::kGuard};
+  guard.data = encode(order);
+  ASSERT_TRUE(plc.ask(guard).ok());
+  vm::Request change{.command = vm::Command::kSwitch};
+  change.flags = vm::kAllowOverrun;
+  ASSERT_TRUE(plc.ask(change).ok());
+  for (int i = 0; i < 9; ++i) {
+    plc.run(1);
+    plc.service().keep_up();
+  }
+  EXPECT_EQ(plc.status().change, "idle");
+  const std::string said = plc.store().history().back().text;
+  EXPECT_NE(said.find("Main.Füllstände = "), std::string::npos) << said;
+  EXPECT_NE(said.find("Main.Füllst` is FALSE"), std::string::npos)
+      << "no character is cut: " << said;
+}
+
 }  // namespace
 }  // namespace stvm
