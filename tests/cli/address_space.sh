@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 if grep -qE '^STC_SANITIZE:[A-Z]*=.+' "$2/CMakeCache.txt"; then
   echo "left out: a sanitizer needs terabytes of addresses"
-  exit 0
+  exit 77
 fi
 mkdir p
 echo 'PROGRAM Main VAR n : DINT; END_VAR n := n + 1; END_PROGRAM' >p/main.st

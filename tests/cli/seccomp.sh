@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 if grep -qE '^STC_SANITIZE:[A-Z]*=.*(address|thread)' "$2/CMakeCache.txt"; then
   echo "left out: what looks for leaks at the end of a process wants to look into it"
-  exit 0
+  exit 77
 fi
 name=/stc_seccomp_$$
 trap 'rm -f /dev/shm$name; cleanup' EXIT INT TERM

@@ -9,10 +9,10 @@ limit=$((3 << 20))
 [ "$(setting STC_ADAPTERS)" = OFF ] || limit=$((limit + (128 << 10)))
 case "$(setting CMAKE_BUILD_TYPE) $(setting STC_SANITIZE) $(setting STC_COVERAGE) $(uname -m)" in
   "Release  OFF x86_64") ;;
-  *) echo "not a release build for x86-64"; exit 0 ;;
+  *) echo "left out: not a release build for x86-64"; exit 77 ;;
 esac
-"$(setting CMAKE_CXX_COMPILER)" --version | grep -q "Free Software" || { echo "not g++"; exit 0; }
-[ -z "$(setting CMAKE_TOOLCHAIN_FILE)" ] || { echo "for another machine"; exit 0; }
+"$(setting CMAKE_CXX_COMPILER)" --version | grep -q "Free Software" || { echo "left out: not g++"; exit 77; }
+[ -z "$(setting CMAKE_TOOLCHAIN_FILE)" ] || { echo "left out: for another machine"; exit 77; }
 bare=$(mktemp)
 trap 'rm -f "$bare"' EXIT
 strip -o "$bare" "$2/bin/stvm"
