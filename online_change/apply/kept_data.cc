@@ -71,7 +71,8 @@ bool start_code_runs(const Plan& plan, const ir::Image& new_image, const Leaving
     if (is_reinit(pou)) return true;
   }
   for (const UpdateStep& step : plan.steps) {
-    if (step.kind == StepKind::kInitialise && holds_unbound(step.bytes)) return true;
+    const auto* initial = step.as<InitialValues>();
+    if (initial != nullptr && holds_unbound(initial->bytes)) return true;
   }
   return false;
 }

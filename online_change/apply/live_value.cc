@@ -49,52 +49,52 @@ std::string value_text(const ir::Image& image, TypeId type, const uint8_t* at) {
 
 void know(UpdateStep& step, uint32_t index, std::span<const uint8_t> made, const uint8_t* value) {
   const size_t row = 1 + made.size() + step.size;
-  step.bytes.resize(row * step.count);
-  uint8_t* const out = step.bytes.data() + index * row;
+  base::Bytes& known = step.as<ConvertedValues>()->known;
+  known.resize(row * step.count);
+  uint8_t* const out = known.data() + index * row;
   *out = 1;
   std::memcpy(out + 1, made.data(), made.size());
   std::memcpy(out + 1 + made.size(), value, step.size);
 }
 
-const char* Conversions::convert(const UpdateStep& step, uint32_t index, const uint8_t* source,
-                                 std::span<uint8_t> out) const {
-  if (!step.bytes.empty()) {
-    const size_t made = source_size(step);
-    const uint8_t* const known = step.bytes.data() + index * (1 + made + step.size);
+const char* Conversions::convert(const ConvertedValues& how, uint32_t index, const uint8_t* source,
+                                 uint32_t to, std::span<uint8_t> out) const {
+  if (!how.known.empty()) {
+    const size_t made = source_size(how);
+    const uint8_t* const known = how.known.data() + index * (1 + made + out.size());
     if (*known != 0 && std::memcmp(known + 1, source, made) == 0) {
       std::memcpy(out.data(), known + 1 + made, out.size());
       return nullptr;
     }
   }
-  if (is_string(from_, step.old_type)) {
-    return convert_string({source, source_size(step)}, unit_of(from_, step.old_type), out,
-                          unit_of(to_, step.new_type));
+  if (is_string(from_, how.old_type)) {
+    return convert_string({source, source_size(how)}, unit_of(from_, how.old_type), out,
+                          unit_of(to_, how.new_type));
   }
-  Converted value = convert_scalar(from_.types, step.old_type, to_.types, step.new_type,
-                                   load(from_, step.old_type, source));
+  Converted value = convert_scalar(from_.types, how.old_type, to_.types, how.new_type,
+                                   load(from_, how.old_type, source));
   if (value.initialise) {
-    to_initial_.read(step.to + index * step.to_stride, out);
+    to_initial_.read(to, out);
   } else {
     std::memcpy(out.data(), &value.bits, out.size());
   }
   return value.loss;
 }
 
-bool Conversions::left_by_inverse(const UpdateStep& step) {
-  const auto [row, is_new] = left_.try_emplace({step.old_type, step.new_type});
+bool Conversions::left_by_inverse(const ConvertedValues& how) {
+  const auto [row, is_new] = left_.try_emplace({how.old_type, how.new_type});
   if (is_new) {
-    row->second =
-        classify(to_.types, step.new_type, from_.types, step.old_type) == Conversion::kSame;
+    row->second = classify(to_.types, how.new_type, from_.types, how.old_type) == Conversion::kSame;
   }
   return row->second;
 }
 
-std::string Conversions::old_text(const UpdateStep& step, const uint8_t* value) const {
-  return value_text(from_, step.old_type, value);
+std::string Conversions::old_text(const ConvertedValues& how, const uint8_t* value) const {
+  return value_text(from_, how.old_type, value);
 }
 
-std::string Conversions::new_text(const UpdateStep& step, const uint8_t* value) const {
-  return value_text(to_, step.new_type, value);
+std::string Conversions::new_text(const ConvertedValues& how, const uint8_t* value) const {
+  return value_text(to_, how.new_type, value);
 }
 
 }  // namespace online_change

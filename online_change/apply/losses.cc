@@ -63,14 +63,10 @@ bool is_constant_already(const ir::Image& old_image, const ir::Symbol& before,
   if (classify(old_image.types, before.type, new_image.types, next.type) == Conversion::kNone) {
     return false;
   }
-  UpdateStep step;
-  step.kind = StepKind::kConvert;
-  step.old_type = before.type;
-  step.new_type = next.type;
-  step.to = next.data;
+  const ConvertedValues how{before.data, 0, before.type, next.type, {}};
   base::Bytes converted(initial.size());
   const char* const loss = Conversions(old_image, new_image)
-                               .convert(step, 0, memory.data() + before.data, converted);
+                               .convert(how, 0, memory.data() + before.data, next.data, converted);
   return loss == nullptr && converted == initial;
 }
 
@@ -82,13 +78,15 @@ std::string shortened(std::string value) {
 LiveLoss describe(const Loss& loss, const Transfer& transfer, const Areas& new_areas,
                   const uint8_t* memory) {
   const UpdateStep& step = transfer.plan().steps[loss.step];
-  const uint8_t* source = memory + step.from + size_t{loss.index} * step.from_stride;
+  const auto& how = *step.as<ConvertedValues>();
+  const uint8_t* source = memory + how.from + size_t{loss.index} * how.from_stride;
+  const uint32_t to = step.place(loss.index);
   base::Bytes converted(step.size);
-  transfer.conversions().convert(step, loss.index, source, converted);
+  transfer.conversions().convert(how, loss.index, source, to, converted);
   LiveLoss row;
-  row.path = new_areas.path_at(step.to + loss.index * step.to_stride);
-  row.old_value = transfer.conversions().old_text(step, source);
-  row.new_value = transfer.conversions().new_text(step, converted.data());
+  row.path = new_areas.path_at(to);
+  row.old_value = transfer.conversions().old_text(how, source);
+  row.new_value = transfer.conversions().new_text(how, converted.data());
   row.what = loss.what;
   return row;
 }
@@ -115,8 +113,7 @@ bool is_on(const ir::Image& old_image, const vm::LeftOutput& output,
 LiveLoss describe_left(const vm::LeftOutput& output, const ir::Image& old_image,
                        std::span<const uint8_t> memory) {
   return {output.path, value_text(old_image, output.symbol, memory), "",
-          "is no longer written (" + ir::address_text(output.address) +
-              ") and keeps its value"};
+          "is no longer written (" + ir::address_text(output.address) + ") and keeps its value"};
 }
 
 uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,

@@ -35,10 +35,10 @@ Migrator::Migrator(Plan& plan, const ir::Image& from, const ir::Image& to,
   }
   bytes_.resize(bytes);
   for (uint32_t i = 0; i < plan_.steps.size(); ++i) {
-    const UpdateStep& step = plan_.steps[i];
-    if (step.kind != StepKind::kMigrate) continue;
-    calls_[step.from].outputs.push_back({i, step.from_stride});
-    plan_.steps[i].bytes.reserve(step.size);  // filled at the boundary, where nothing is allocated
+    auto* const value = plan_.steps[i].as<GivenValue>();
+    if (value == nullptr) continue;
+    calls_[value->call].outputs.push_back({i, value->slot});
+    value->made.reserve(plan_.steps[i].size);  // filled where nothing is allocated: at the boundary
   }
 }
 
@@ -137,7 +137,7 @@ base::Status Migrator::run_call(size_t number) {
   const uint8_t* from = bytes_.data() + calls_[number].first_byte;
   for (const Input& input : calls_[number].inputs) {
     if (input.converts) {
-      conversions_.convert(input.conversion, 0, from, {frame + input.slot, input.slot_size});
+      conversions_.convert(input.conversion, 0, from, 0, {frame + input.slot, input.slot_size});
     } else {
       std::memcpy(frame + input.slot, from, input.size);
       code_->bools().normalise(input.conversion.new_type, frame + input.slot);
@@ -162,7 +162,7 @@ base::Status Migrator::run_call(size_t number) {
   }
   for (const Output& output : calls_[number].outputs) {
     UpdateStep& step = plan_.steps[output.step];
-    step.bytes.assign(frame + output.at, frame + output.at + step.size);
+    step.as<GivenValue>()->made.assign(frame + output.at, frame + output.at + step.size);
   }
   return base::Ok{};
 }

@@ -19,7 +19,7 @@ inline constexpr uint64_t kMigrationsFuel = 5'000'000;
 
 class Migrator {
  public:
-  // Fills UpdateStep::bytes of the plan's kMigrate steps, so the plan outlives it, and so do the
+  // Fills GivenValue::made in the plan's steps, so the plan outlives it, and so do the
   // images and the generation, which is the new version's on the way back, too. Reserves memory,
   // and so is not for a boundary. Null when there is nothing to migrate.
   static base::Result<std::unique_ptr<Migrator>> make(Plan& plan, const ir::Image& from,
@@ -61,7 +61,7 @@ class Migrator {
     uint32_t slot = 0;  // in the frame
     uint32_t slot_size = 0;
     bool converts = false;
-    UpdateStep conversion;
+    ConvertedValues conversion;
   };
   struct Call {
     size_t first_byte = 0;  // of its inputs, in bytes_

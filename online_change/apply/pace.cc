@@ -37,12 +37,10 @@ Plan plan_of_values(const ir::Image& image) {
   Plan plan;
   for (uint32_t i = 0; i < kValues; ++i) {
     UpdateStep step;
-    step.kind = StepKind::kConvert;
-    step.from = i * kApart;
     step.to = (kValues + i) * kApart;
     step.size = ir::scalar_size(ir::Scalar::kI32);
-    step.old_type = image.types.elementary(ir::Kind::kInt);
-    step.new_type = image.types.elementary(ir::Kind::kDint);
+    step.how = ConvertedValues{i * kApart, 0, image.types.elementary(ir::Kind::kInt),
+                               image.types.elementary(ir::Kind::kDint), {}};
     plan.steps.push_back(step);
   }
   return plan;

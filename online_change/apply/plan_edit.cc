@@ -37,7 +37,7 @@ PlanEdit::PlanEdit(Plan& plan, const ir::Image& running, const ir::Image& next)
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
     for (uint32_t i = 0; i < step.count; ++i) {
-      places_.push_back({step.to + i * step.to_stride, step.size, number, i});
+      places_.push_back({step.place(i), step.size, number, i});
     }
   }
   std::sort(places_.begin(), places_.end(),
@@ -59,11 +59,13 @@ void PlanEdit::count_row(uint32_t fate) {
 
 void PlanEdit::initialise(uint32_t to, std::span<const uint8_t> value) {
   const Place* const place = writes(to, static_cast<uint32_t>(value.size()));
-  if (place == nullptr || plan_.steps[place->step].kind != StepKind::kInitialise) return;
+  if (place == nullptr) return;
   UpdateStep& step = plan_.steps[place->step];
-  step.bytes.resize(step.total());
+  auto* const initial = step.as<InitialValues>();
+  if (initial == nullptr) return;
+  initial->bytes.resize(step.total());
   const size_t at = size_t{place->index} * step.size + (to - place->to);
-  std::memcpy(step.bytes.data() + at, value.data(), value.size());
+  std::memcpy(initial->bytes.data() + at, value.data(), value.size());
   count_row(step.fate);
 }
 
@@ -73,16 +75,13 @@ void PlanEdit::convert(const ir::Symbol& now, const std::string& path, const ir:
   if (running_.layouts[now.type].size != made.size()) return;
   const Place* const place = writes(here.data, size);
   UpdateStep one;
-  one.kind = StepKind::kConvert;
-  one.from = now.data;
   one.to = here.data;
   one.size = size;
-  one.old_type = now.type;
-  one.new_type = here.type;
+  one.how = ConvertedValues{now.data, 0, now.type, here.type, {}};
   if (place == nullptr) {
     if (now.data != here.data) return;
     know(one, 0, made, value);
-    one.fate = own_row(one, path);
+    one.fate = own_row(now.type, here.type, path);
     --plan_.counts.kept;
     plan_.boundary_bytes += size;
     added_.push_back(std::move(one));
@@ -90,28 +89,30 @@ void PlanEdit::convert(const ir::Symbol& now, const std::string& path, const ir:
   }
   UpdateStep& step = plan_.steps[place->step];
   const uint32_t within = here.data - place->to;
-  if (step.from + place->index * step.from_stride + within != now.data) return;
-  if (step.kind == StepKind::kConvert && within == 0 && step.size == size &&
-      running_.layouts[step.old_type].size == made.size()) {
+  const std::optional<CopiedValues> source = step.source();
+  if (!source || source->from + place->index * source->from_stride + within != now.data) return;
+  const auto* converted = step.as<ConvertedValues>();
+  if (converted != nullptr && within == 0 && step.size == size &&
+      running_.layouts[converted->old_type].size == made.size()) {
     know(step, place->index, made, value);
     count_row(step.fate);
-  } else if (step.kind == StepKind::kCopy) {
+  } else if (step.as<CopiedValues>() != nullptr) {
     know(one, 0, made, value);
     if (step.fate != kNoFate) --plan_.fates[step.fate].count;
-    one.fate = own_row(one, path);
+    one.fate = own_row(now.type, here.type, path);
     --plan_.counts.moved;
     cuts_.push_back({place->step, uint64_t{place->index} * step.size + within, std::move(one)});
   }
 }
 
 // Of a value that had none, or shared it with what only moves.
-uint32_t PlanEdit::own_row(const UpdateStep& step, const std::string& path) {
+uint32_t PlanEdit::own_row(ir::TypeId old_type, ir::TypeId new_type, const std::string& path) {
   ++count_;
   ++plan_.counts.converted;
   FateRow row;
   row.fate = Fate::kConverted;
-  row.old_type = running_.types.text(step.old_type);
-  row.new_type = next_.types.text(step.new_type);
+  row.old_type = running_.types.text(old_type);
+  row.new_type = next_.types.text(new_type);
   const auto number = static_cast<uint32_t>(plan_.fates.size());
   const auto [known, is_new] = own_rows_.emplace(row.old_type + "\n" + row.new_type, number);
   if (!is_new) {
@@ -132,8 +133,8 @@ void PlanEdit::cut(const UpdateStep& step, std::span<const Cut> cuts,
       const auto index = static_cast<uint32_t>(done / step.size);
       const auto within = static_cast<uint32_t>(done % step.size);
       UpdateStep part = step;
-      part.from = step.from + index * step.from_stride + within;
-      part.to = step.to + index * step.to_stride + within;
+      part.as<CopiedValues>()->from += index * part.as<CopiedValues>()->from_stride + within;
+      part.to = step.place(index) + within;
       const bool whole = within == 0 && end - done >= step.size;
       part.count = whole ? static_cast<uint32_t>((end - done) / step.size) : 1;
       if (!whole)

@@ -42,7 +42,7 @@ class PlanEdit {
   };
   const Place* writes(uint32_t to, uint32_t size) const;
   void count_row(uint32_t fate);
-  uint32_t own_row(const UpdateStep& step, const std::string& path);
+  uint32_t own_row(ir::TypeId old_type, ir::TypeId new_type, const std::string& path);
   void cut(const UpdateStep& step, std::span<const Cut> cuts, std::vector<UpdateStep>& out) const;
   void cut_steps();
   void tell_rows();

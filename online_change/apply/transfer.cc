@@ -36,8 +36,9 @@ void scatter(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* 
 }
 
 bool without_gaps(const UpdateStep& step) {
-  if (step.kind == StepKind::kConvert) return false;
-  const bool read_so = step.kind == StepKind::kInitialise || step.from_stride == step.size;
+  if (step.as<ConvertedValues>() != nullptr) return false;
+  const auto* copied = step.as<CopiedValues>();
+  const bool read_so = copied == nullptr || copied->from_stride == step.size;
   return step.count == 1 || (read_so && step.to_stride == step.size);
 }
 
@@ -49,8 +50,8 @@ Transfer::Transfer(const Plan& plan, const ir::Image& from, const ir::Image& to,
   size_t bytes = 0;
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
-    if (which == Steps::kBoundary && step.early) continue;
-    if (which == Steps::kEarly && !step.early) continue;
+    if (which == Steps::kBoundary && step.early()) continue;
+    if (which == Steps::kEarly && !step.early()) continue;
     add_step(number, bytes);
     bytes += step.total();
   }
@@ -79,25 +80,30 @@ void Transfer::add_step(uint32_t number, size_t at) {
   Piece piece;
   piece.step = number;
   piece.at = at;
-  piece.from = step.from;
+  const CopiedValues source = step.source().value_or(CopiedValues{});
+  piece.from = source.from;
   piece.to = step.to;
-  piece.kind = step.kind;
-  piece.from_stride = step.from_stride;
+  piece.kind = step.kind();
+  piece.from_stride = source.from_stride;
   piece.to_stride = step.to_stride;
-  if (step.kind == StepKind::kEnter) converted_.push_back({step.to, step.size, at});
+  if (const auto* entered = step.as<EnteredStep>()) {
+    piece.active = entered->active;
+    converted_.push_back({step.to, step.size, at});
+  }
   if (without_gaps(step)) return add_bytes(piece, step.total());
-  const bool converts = step.kind == StepKind::kConvert;
+  const auto* conversion = step.as<ConvertedValues>();
+  const bool converts = conversion != nullptr;
   if (converts) {
-    piece.fast = conversions_.fast(step);
-    piece.left = conversions_.left_by_inverse(step);
+    piece.fast = conversions_.fast(*conversion);
+    piece.left = conversions_.left_by_inverse(*conversion);
   }
   piece.size = step.size;
   uint32_t most = converts && piece.fast == nullptr ? kSlowValues : kFastValues;
   most = std::clamp(kPieceBytes / std::max(step.size, 1u), 1u, most);
   for (piece.first = 0; piece.first < step.count; piece.first += piece.count) {
     piece.count = std::min(most, step.count - piece.first);
-    piece.from = step.from + piece.first * step.from_stride;
-    piece.to = step.to + piece.first * step.to_stride;
+    piece.from = source.from + piece.first * source.from_stride;
+    piece.to = step.place(piece.first);
     piece.within = piece.first * step.size;
     piece.at = at + piece.within;
     if (step.size > kPieceBytes && !converts) {
@@ -126,9 +132,9 @@ void Transfer::add_bytes(Piece part, uint64_t length) {
 }
 
 uint64_t Transfer::source_extent(const Piece& piece) const {
-  if (!reads_one_place(piece.kind)) return 0;
+  if (!step_of(piece).source()) return 0;
   const bool converts = piece.kind == StepKind::kConvert;
-  const uint32_t size = converts ? conversions_.source_size(step_of(piece)) : piece.size;
+  const uint32_t size = converts ? source_size(piece) : piece.size;
   return uint64_t{piece.count - 1} * piece.from_stride + size;
 }
 
@@ -151,11 +157,11 @@ void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* o
   if (piece.kind == StepKind::kCopy)
     return gather(memory + piece.from, piece, piece.from_stride, out);
   if (piece.kind == StepKind::kEnter) {
-    const uint32_t other = piece.from_stride;
-    std::memcpy(out, memory + (memory[other] != 0 ? other : piece.from), piece.total());
+    const uint32_t from = memory[piece.active] != 0 ? piece.active : piece.from;
+    std::memcpy(out, memory + from, piece.total());
     return;
   }
-  const base::Bytes& bytes = step_of(piece).bytes;
+  const base::Bytes& bytes = *step_of(piece).bytes();
   if (bytes.empty()) {
     std::memset(out, 0, piece.total());
   } else {
@@ -165,8 +171,8 @@ void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* o
 }
 
 void Transfer::gather_parts(const Piece& piece, const uint8_t* memory, uint8_t* out) const {
-  online_change::gather(plan_.gathers[step_of(piece).from], memory, piece.within,
-                        {out, piece.total()});
+  const uint32_t row = step_of(piece).as<GatheredBits>()->row;
+  online_change::gather(plan_.gathers[row], memory, piece.within, {out, piece.total()});
 }
 
 bool Transfer::read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
@@ -180,8 +186,8 @@ bool Transfer::read_converted(const Piece& piece, const uint8_t* memory, uint8_t
       source = memory + piece.from + size_t{i} * piece.from_stride;
       to = out + size_t{i} * piece.size;
     }
-    const char* what =
-        conversions_.convert(step_of(piece), piece.first + i, source, {to, piece.size});
+    const char* what = conversions_.convert(conversion_of(piece), piece.first + i, source,
+                                            piece.to + i * piece.to_stride, {to, piece.size});
     if (what != nullptr && !on_loss({piece.step, piece.first + i, what})) return false;
   }
   return true;
@@ -225,7 +231,7 @@ bool Transfer::move(const Piece& piece, const uint8_t* source, uint8_t* target,
 void Transfer::count(const Piece& piece, BoundaryWork& work) const {
   const uint32_t size = step_of(piece).size;
   const bool slow = piece.kind == StepKind::kConvert && piece.fast == nullptr;
-  if (piece.within == 0) work.step(reads_one_place(piece.kind) ? piece.from : 0, piece.to);
+  if (piece.within == 0) work.step(piece.from, piece.to);
   if (size == 0 || piece.within % size == 0) {
     (slow ? work.slow_values : work.values) += piece.count;
   }
@@ -266,7 +272,7 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
         }
         break;
       case StepKind::kMigrate:
-        if (!step_of(piece).bytes.empty()) {
+        if (!step_of(piece).bytes()->empty()) {
           read_values(piece, memory, staged_.data() + piece.at);
           break;
         }
@@ -281,18 +287,19 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
 
 void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
                                    const Transfer& forward) {
-  const UpdateStep& step = step_of(piece);
-  const uint32_t size = conversions_.source_size(step);
+  const ConvertedValues& how = conversion_of(piece);
+  const uint32_t size = conversions_.source_size(how);
   for (uint32_t i = 0; i < piece.count; ++i) {
-    const size_t at = piece.at + size_t{i} * step.size;
-    std::span<uint8_t> out(staged_.data() + at, step.size);
+    const size_t at = piece.at + size_t{i} * piece.size;
+    std::span<uint8_t> out(staged_.data() + at, piece.size);
     const uint8_t* const before = remembered_.data() + at;
-    uint32_t from = piece.from + i * step.from_stride;
+    uint32_t from = piece.from + i * piece.from_stride;
     if (piece.left ? std::memcmp(memory + from, before, size) == 0
                    : forward.still_as_converted(from, size, memory)) {
-      std::memcpy(out.data(), before, step.size);
+      std::memcpy(out.data(), before, out.size());
     } else {
-      conversions_.convert(step, piece.first + i, memory + from, out);
+      conversions_.convert(how, piece.first + i, memory + from, piece.to + i * piece.to_stride,
+                           out);
     }
   }
 }

@@ -20,7 +20,7 @@ namespace online_change {
 // Asked before each step; true: stop here (a deadline, a test).
 using Interrupted = std::function<bool()>;
 
-struct Loss {  // of one value of a kConvert step
+struct Loss {  // of one value of a step that converts
   uint32_t step = 0;
   uint32_t index = 0;
   const char* what = nullptr;
@@ -40,7 +40,8 @@ struct Piece {
   uint32_t from_stride = 0;
   uint32_t to_stride = 0;
   StepKind kind = StepKind::kCopy;
-  size_t at = 0;  // in the transfer's buffers
+  uint32_t active = 0;  // kEnter: where the other step is
+  size_t at = 0;        // in the transfer's buffers
   FastConverter fast = nullptr;
   bool left = false;  // kConvert: the way in the other direction leaves its bytes
   uint32_t total() const { return size * count; }
@@ -81,7 +82,7 @@ class Transfer {
   // Of the way there: what it has made of the value for `offset`, converted; null: none is.
   const uint8_t* converted(uint32_t offset, uint32_t size) const;
   uint32_t source_size(const Piece& piece) const {  // kConvert: of one value
-    return conversions_.source_size(step_of(piece));
+    return conversions_.source_size(conversion_of(piece));
   }
   // Reads a piece and writes it. False: ended by `on_loss`, not written.
   bool move(const Piece& piece, const uint8_t* source, uint8_t* target, const OnLoss& on_loss);
@@ -92,8 +93,8 @@ class Transfer {
   uint64_t target_extent(const Piece& piece) const;
   // Is it made anew at the boundary, whatever it was before?
   bool is_late(const Piece& piece) const {
-    const StepKind kind = step_of(piece).kind;
-    return kind == StepKind::kMigrate || kind == StepKind::kEnter || kind == StepKind::kGather;
+    return piece.kind == StepKind::kMigrate || piece.kind == StepKind::kEnter ||
+           piece.kind == StepKind::kGather;
   }
 
   const Conversions& conversions() const { return conversions_; }
@@ -111,6 +112,9 @@ class Transfer {
   void add_step(uint32_t number, size_t at);
   void add_bytes(Piece part, uint64_t length);
   const UpdateStep& step_of(const Piece& piece) const { return plan_.steps[piece.step]; }
+  const ConvertedValues& conversion_of(const Piece& piece) const {
+    return *step_of(piece).as<ConvertedValues>();
+  }
   void read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const;
   void gather_parts(const Piece& piece, const uint8_t* memory, uint8_t* out) const;
   bool read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,

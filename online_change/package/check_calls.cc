@@ -56,23 +56,23 @@ bool PlanCheck::check_input(const MigrationInput& input, const ir::LinkedPou& po
          fit.value_at(input.from, {slot->region.type, 0, false}) == Fit::kYes;
 }
 
-const ir::FrameSlot* PlanCheck::slot_of(const UpdateStep& step) const {
-  const ir::LinkedMigration& row = code_.migrations[plan_.calls[step.from].row];
-  return find_slot(code_.pous[row.pou], step.from_stride, ir::LocalKind::kOutput);
+const ir::FrameSlot* PlanCheck::slot_of(const GivenValue& value) const {
+  const ir::LinkedMigration& row = code_.migrations[plan_.calls[value.call].row];
+  return find_slot(code_.pous[row.pou], value.slot, ir::LocalKind::kOutput);
 }
 
 // Both sources are steps, so whichever is taken.
 bool PlanCheck::check_entered(Node node, const Target& target) {
-  const UpdateStep& step = step_of(target);
+  const auto& how = *step_of(target).as<EnteredStep>();
   const bool right = !node.in_out && node.begin == target.to && size_of(node) == target.size &&
-                     is_step(new_, node.type) && fit_.value_at(step.from, node) == Fit::kYes &&
-                     fit_.value_at(step.from_stride, node) == Fit::kYes;
+                     is_step(new_, node.type) && fit_.value_at(how.from, node) == Fit::kYes &&
+                     fit_.value_at(how.active, node) == Fit::kYes;
   if (right) reach(target);
   return right || fail(node.begin, "goes on from what is no step");
 }
 
 bool PlanCheck::check_migrated(Node node, const Target& target) {
-  const ir::FrameSlot* slot = slot_of(step_of(target));
+  const ir::FrameSlot* slot = slot_of(*step_of(target).as<GivenValue>());
   const bool right = slot != nullptr && !node.in_out && node.begin == target.to &&
                      size_of(node) == target.size &&
                      code_.layouts[slot->region.type].size == target.size &&

@@ -13,7 +13,6 @@
 namespace online_change {
 namespace {
 
-
 bool is_area(const ir::Image& image, Node node) {
   return image.types[node.type].kind == ir::Kind::kGlobals;
 }
@@ -61,10 +60,10 @@ void PlanCheck::reach(const Target& first, uint32_t count) {
 bool PlanCheck::check_reached() {
   for (size_t i = 0; i < plan_.steps.size(); ++i) {
     const UpdateStep& step = plan_.steps[i];
-    const bool plain = step.kind == StepKind::kInitialise || step.kind == StepKind::kCopy ||
-                       step.kind == StepKind::kGather;
-    if (plain || reached_[i] == step.count) continue;
-    return fail(step.to + reached_[i] * step.to_stride, "is made, but no variable is there");
+    const bool single = step.as<ConvertedValues>() != nullptr ||
+                        step.as<EnteredStep>() != nullptr || step.as<GivenValue>() != nullptr;
+    if (!single || reached_[i] == step.count) continue;
+    return fail(step.place(reached_[i]), "is made, but no variable is there");
   }
   return true;
 }
@@ -92,28 +91,30 @@ bool PlanCheck::check_form(const UpdateStep& step) {
   if (step.count > 1 && step.to_stride < step.size) {
     return fail(step.to, "is written twice");
   }
-  uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
-  if (uint64_t{step.to} + hull > new_.data_capacity) return fail(step.to, "ends outside of memory");
+  if (step.to + step.hull() > new_.data_capacity) return fail(step.to, "ends outside of memory");
   if (step.fate != kNoFate && step.fate >= plan_.fates.size()) {
     return fail(step.to, "has no row in the fate report");
   }
-  if (step.kind == StepKind::kMigrate) {
-    const bool right = step.count == 1 && !step.early && step.bytes.empty() &&
-                       step.from < plan_.calls.size() && new_.types.contains(step.new_type);
+  if (const auto* given = step.as<GivenValue>()) {
+    const bool right = step.count == 1 && given->made.empty() && given->call < plan_.calls.size() &&
+                       new_.types.contains(given->type);
     return right || fail(step.to, "has a migration step of another form");
   }
-  if (step.kind == StepKind::kGather && !check_gather(step)) return false;
-  if (step.kind == StepKind::kInitialise || step.kind == StepKind::kGather) {
-    if (!step.bytes.empty() && step.bytes.size() != step.total()) {
-      return fail(step.to, "is initialised with too few or too many bytes");
-    }
-  } else if (step.early || !step.bytes.empty()) {
-    return fail(step.to, "has a step that mixes copying and initialising");
+  const auto* gathered = step.as<GatheredBits>();
+  if (gathered != nullptr && !check_gather(step, *gathered)) return false;
+  const base::Bytes* const bytes = step.bytes();
+  if (bytes != nullptr && !bytes->empty() && bytes->size() != step.total()) {
+    return fail(step.to, "is initialised with too few or too many bytes");
   }
-  if (step.kind == StepKind::kEnter && step.count != 1) return fail(step.to, "is several steps");
-  bool types_known = old_.types.contains(step.old_type) && new_.types.contains(step.new_type);
-  if (step.kind == StepKind::kConvert && !types_known) return fail(step.to, "has no known type");
-  return true;
+  const bool entered = step.as<EnteredStep>() != nullptr;
+  if (entered && step.count != 1) return fail(step.to, "is several steps");
+  const auto* converted = step.as<ConvertedValues>();
+  if (converted == nullptr) return true;
+  if (!converted->known.empty()) {
+    return fail(step.to, "is converted to what only a controller knows");
+  }
+  return (old_.types.contains(converted->old_type) && new_.types.contains(converted->new_type)) ||
+         fail(step.to, "has no known type");
 }
 
 bool PlanCheck::check_targets() {
@@ -127,11 +128,11 @@ bool PlanCheck::check_targets() {
 }
 
 // Bytes of one area each, into the variable.
-bool PlanCheck::check_gather(const UpdateStep& step) {
-  if (step.count != 1 || step.early || step.from >= plan_.gathers.size()) {
+bool PlanCheck::check_gather(const UpdateStep& step, const GatheredBits& gathered) {
+  if (step.count != 1 || gathered.row >= plan_.gathers.size()) {
     return fail(step.to, "has a step of another form that gathers bytes");
   }
-  for (const GatheredPart& part : plan_.gathers[step.from]) {
+  for (const GatheredPart& part : plan_.gathers[gathered.row]) {
     const uint32_t size = std::max(part.size, 1u);
     const std::optional<uint32_t> id = old_areas_.instance_at(part.from);
     const bool from = id && uint64_t{part.from} + size <=
@@ -146,7 +147,7 @@ bool PlanCheck::check_gather(const UpdateStep& step) {
 bool PlanCheck::check_gathered(Node node, const Target& target, uint32_t depth) {
   if (node.in_out) return fail(node.begin, "is no variable that has bits at an address");
   if (takes_any_bits(new_.types, node.type)) {
-    const Gather& parts = plan_.gathers[step_of(target).from];
+    const Gather& parts = parts_of(target);
     // For a value that no part writes as a whole the initial bytes count.
     return (is_initialised(node.begin, size_of(node), target) && !parts.empty()) ||
            fail(node.begin, "is initialised with something else than its initial value");
@@ -158,7 +159,7 @@ bool PlanCheck::check_gathered(Node node, const Target& target, uint32_t depth) 
     return fail(node.begin, "is no variable that has bits at an address");
   }
   const uint32_t within = node.begin - target.to;
-  for (const GatheredPart& part : plan_.gathers[step_of(target).from]) {
+  for (const GatheredPart& part : parts_of(target)) {
     if (within - part.within >= std::max(part.size, 1u)) continue;
     const bool bit = part.size == 0 && part.to_mask == GatheredPart::kBool;
     if (!bit) return fail(node.begin, "is a BOOL that gets other bytes than 0 and 1");
@@ -168,23 +169,20 @@ bool PlanCheck::check_gathered(Node node, const Target& target, uint32_t depth) 
 
 // All values of a step lie in one area, and come from one area.
 bool PlanCheck::check_places(const UpdateStep& step) {
-  uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
   std::optional<uint32_t> id = new_areas_.instance_at(step.to);
-  if (!id || step.to + hull > uint64_t{new_areas_.begin(*id)} + new_areas_.capacity(*id)) {
+  if (!id || step.to + step.hull() > uint64_t{new_areas_.begin(*id)} + new_areas_.capacity(*id)) {
     return fail(step.to, "is written outside of any area");
   }
-  if (step.kind == StepKind::kInitialise) {
-    if (step.early && old_areas_.owns(step.to, static_cast<uint32_t>(hull))) {
-      return fail(step.to, "is initialised early, but the running version uses these bytes");
-    }
-    return true;
+  if (step.early() && old_areas_.owns(step.to, static_cast<uint32_t>(step.hull()))) {
+    return fail(step.to, "is initialised early, but the running version uses these bytes");
   }
-  // check_calls() and check_gather() have seen what they read.
-  if (step.kind == StepKind::kMigrate || step.kind == StepKind::kGather) return true;
-  uint64_t size = step.kind == StepKind::kConvert ? old_.layouts[step.old_type].size : step.size;
-  uint64_t end = step.from + uint64_t{step.from_stride} * (step.count - 1) + size;
+  const std::optional<CopiedValues> source = step.source();
+  if (!source) return true;  // check_calls() and check_gather() have seen what they read
+  const auto* converted = step.as<ConvertedValues>();
+  const uint64_t size = converted == nullptr ? step.size : old_.layouts[converted->old_type].size;
+  const uint64_t end = source->from + uint64_t{source->from_stride} * (step.count - 1) + size;
   if (end > old_.data_capacity) return fail(step.to, "is read outside of memory");
-  id = old_areas_.instance_at(step.from);
+  id = old_areas_.instance_at(source->from);
   if (!id || end > uint64_t{old_areas_.begin(*id)} + old_areas_.capacity(*id)) {
     return fail(step.to, "is read from outside of any area");
   }
@@ -192,8 +190,12 @@ bool PlanCheck::check_places(const UpdateStep& step) {
 }
 
 uint32_t PlanCheck::source_of(const Target& target) const {
-  const UpdateStep& step = step_of(target);
-  return step.from + step.from_stride * target.index;
+  const CopiedValues source = step_of(target).source().value_or(CopiedValues{});
+  return source.from + source.from_stride * target.index;
+}
+
+const Gather& PlanCheck::parts_of(const Target& target) const {
+  return plan_.gathers[step_of(target).as<GatheredBits>()->row];
 }
 
 uint32_t PlanCheck::size_of(Node node) const {
@@ -238,7 +240,7 @@ bool PlanCheck::check_area(uint32_t id) {
   const std::optional<Target> first = first_behind(area.begin);
   bool touched = first && first->to < uint64_t{area.begin} + used;
   uint32_t from = area.begin;
-  if (touched && step_of(*first).kind == StepKind::kCopy && first->to == area.begin &&
+  if (touched && step_of(*first).as<CopiedValues>() != nullptr && first->to == area.begin &&
       first->size >= used) {
     touched = false;  // moved as a whole
     from = source_of(*first);
@@ -282,17 +284,18 @@ uint32_t PlanCheck::converted_run(Node first, uint32_t most) {
   if (!found || found->to != first.begin || has_parts(first)) return 0;
   const UpdateStep& step = step_of(*found);
   uint32_t run = std::min(most, step.count - found->index);
-  bool right = step.kind == StepKind::kConvert && step.new_type == first.type &&
-               step.size == size_of(first) && (run == 1 || step.to_stride == step.size) &&
-               step.from_stride == old_.layouts[step.old_type].size &&
-               classify(old_.types, step.old_type, new_.types, step.new_type) != Conversion::kNone;
-  if (!right || !old_areas_.is_array_of(source_of(*found), step.old_type, run)) return 0;
+  const auto* how = step.as<ConvertedValues>();
+  bool right = how != nullptr && how->new_type == first.type && step.size == size_of(first) &&
+               (run == 1 || step.to_stride == step.size) &&
+               how->from_stride == old_.layouts[how->old_type].size &&
+               classify(old_.types, how->old_type, new_.types, how->new_type) != Conversion::kNone;
+  if (!right || !old_areas_.is_array_of(source_of(*found), how->old_type, run)) return 0;
   reach(*found, run);
   return run;
 }
 
 bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
-  switch (step_of(target).kind) {
+  switch (step_of(target).kind()) {
     case StepKind::kInitialise:
       return check_initial(node, target);
     case StepKind::kConvert:
@@ -310,15 +313,16 @@ bool PlanCheck::check_written(Node node, const Target& target, uint32_t depth) {
 }
 
 bool PlanCheck::is_initialised(uint32_t begin, uint32_t size, const Target& target) const {
-  const UpdateStep& step = step_of(target);
-  if (step.bytes.empty()) return new_data_.is_zero(begin, size);
+  const base::Bytes* const bytes = step_of(target).bytes();
+  if (bytes == nullptr) return false;
+  if (bytes->empty()) return new_data_.is_zero(begin, size);
   base::Bytes wanted(size);
   new_data_.read(begin, wanted);
-  const size_t at = size_t{target.index} * step.size + (begin - target.to);
+  const uint8_t* const made =
+      bytes->data() + size_t{target.index} * step_of(target).size + (begin - target.to);
   constexpr uint32_t kOld = ir::kOldStamp;
-  return std::memcmp(wanted.data(), step.bytes.data() + at, size) == 0 ||
-         (begin == stamp_at_ && size == sizeof kOld &&
-          std::memcmp(&kOld, step.bytes.data() + at, size) == 0);
+  return std::memcmp(wanted.data(), made, size) == 0 ||
+         (begin == stamp_at_ && size == sizeof kOld && std::memcmp(&kOld, made, size) == 0);
 }
 
 bool PlanCheck::check_initial(Node node, const Target& target) {
@@ -330,18 +334,16 @@ bool PlanCheck::check_grown_union(Node node) {
   const std::optional<Target> front = first_behind(node.begin);
   const bool copied = front && front->to <= node.begin;
   const uint64_t behind = copied ? front->end() : front->to;
-  const uint32_t from =
-      copied ? source_of(*front) + (node.begin - front->to) : node.begin;
+  const uint32_t from = copied ? source_of(*front) + (node.begin - front->to) : node.begin;
   const std::optional<Node> source = old_areas_.leaf_at(from);
   const uint64_t end = uint64_t{node.begin} + size_of(node);
   const std::optional<Target> rest = first_behind(static_cast<uint32_t>(behind));
   const bool right =
       !node.in_out && source && !source->in_out && source->begin == from &&
-      (!copied || step_of(*front).kind == StepKind::kCopy) &&
+      (!copied || step_of(*front).as<CopiedValues>() != nullptr) &&
       keeps_union_bytes(old_, source->type, new_, node.type) &&
       behind == uint64_t{node.begin} + old_.layouts[source->type].size && rest &&
-      rest->to <= behind && rest->end() >= end &&
-      step_of(*rest).kind == StepKind::kInitialise &&
+      rest->to <= behind && rest->end() >= end && step_of(*rest).as<InitialValues>() != nullptr &&
       is_initialised(static_cast<uint32_t>(behind), static_cast<uint32_t>(end - behind), *rest);
   return right || fail(node.begin, "is written in part only");
 }
@@ -350,13 +352,13 @@ bool PlanCheck::check_conversion(Node node, const Target& target, uint32_t depth
   if (has_parts(node)) {
     return for_each_part(node, [&](Node part) { return check_node(part, depth + 1); });
   }
-  const UpdateStep& step = step_of(target);
+  const auto& how = *step_of(target).as<ConvertedValues>();
   uint32_t from = source_of(target);
   std::optional<Node> source = old_areas_.leaf_at(from);
-  bool right = source && !source->in_out && source->begin == from &&
-               source->type == step.old_type && !node.in_out && node.type == step.new_type &&
-               node.begin == target.to && size_of(node) == target.size &&
-               classify(old_.types, step.old_type, new_.types, step.new_type) != Conversion::kNone;
+  bool right = source && !source->in_out && source->begin == from && source->type == how.old_type &&
+               !node.in_out && node.type == how.new_type && node.begin == target.to &&
+               size_of(node) == target.size &&
+               classify(old_.types, how.old_type, new_.types, how.new_type) != Conversion::kNone;
   if (right) reach(target);
   return right || fail(node.begin, "is converted between other types than its own");
 }

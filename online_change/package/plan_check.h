@@ -40,11 +40,11 @@ class PlanCheck {
   bool check_node(Node node, uint32_t depth);
   bool check_calls();
   bool check_input(const MigrationInput& input, const ir::LinkedPou& pou, TypeFit& fit);
-  const ir::FrameSlot* slot_of(const UpdateStep& step) const;
+  const ir::FrameSlot* slot_of(const GivenValue& value) const;
   bool check_entered(Node node, const Target& target);
   bool check_migrated(Node node, const Target& target);
   bool check_written(Node node, const Target& target, uint32_t depth);
-  bool check_gather(const UpdateStep& step);
+  bool check_gather(const UpdateStep& step, const GatheredBits& gathered);
   bool check_gathered(Node node, const Target& target, uint32_t depth);
   bool check_initial(Node node, const Target& target);
   bool is_initialised(uint32_t begin, uint32_t size, const Target& target) const;
@@ -58,6 +58,7 @@ class PlanCheck {
   bool has_parts(Node node) const;
   uint32_t size_of(Node node) const;
   uint32_t source_of(const Target& target) const;
+  const Gather& parts_of(const Target& target) const;
   const UpdateStep& step_of(const Target& target) const { return plan_.steps[target.step]; }
   std::optional<Target> first_behind(uint32_t place) const { return values_->first_behind(place); }
   // Values that are not just copied were looked at where the variable is that they are made for.

@@ -3,6 +3,7 @@
 
 #include "base/archive.h"
 #include "online_change/package/package.h"
+#include "online_change/package/stored_step.h"
 
 namespace online_change {
 
@@ -16,22 +17,6 @@ void fate_fields(Archive& a, T& row) {
   a(row.reason);
   a(row.count);
   a(row.old_path);
-}
-
-template <class Archive, class T>
-void step_fields(Archive& a, T& step) {
-  a.enumerator(step.kind, StepKind::kGather);
-  a(step.early);
-  a(step.from);
-  a(step.to);
-  a(step.size);
-  a(step.count);
-  a(step.from_stride);
-  a(step.to_stride);
-  a(step.old_type);
-  a(step.new_type);
-  a(step.fate);
-  a(step.bytes);
 }
 
 template <class Archive, class T>

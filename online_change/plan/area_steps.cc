@@ -7,37 +7,37 @@ namespace {
 
 // Side by side only: what stays in its place has no step, and may lie in a gap.
 bool joins(const UpdateStep& a, const UpdateStep& b) {
-  if (a.kind != StepKind::kCopy || b.kind != StepKind::kCopy) return false;
+  const auto* first = a.as<CopiedValues>();
+  const auto* next = b.as<CopiedValues>();
+  if (first == nullptr || next == nullptr) return false;
   if (a.count != 1 || b.count != 1 || a.fate != b.fate) return false;
-  if (a.to - a.from != b.to - b.from) return false;
+  if (a.to - first->from != b.to - next->from) return false;
   return uint64_t{a.to} + a.size == b.to;
 }
 
 }  // namespace
 
-UpdateStep step_for(const DiffOp& op, StepKind kind, uint32_t from, uint32_t to, uint32_t fate) {
+UpdateStep step_for(const DiffOp& op, uint32_t to, uint32_t fate) {
   UpdateStep step;
-  step.kind = kind;
-  step.from = kind == StepKind::kInitialise ? 0 : from + op.from;
   step.to = to + op.to;
   step.size = op.size;
   step.count = op.count;
-  step.from_stride = kind == StepKind::kInitialise ? 0 : op.from_stride;
   step.to_stride = op.to_stride;
-  if (kind == StepKind::kConvert) {
-    step.old_type = op.old_type;
-    step.new_type = op.new_type;
-  }
   step.fate = fate;
   return step;
 }
 
+CopiedValues copied_by(const DiffOp& op, uint32_t from) { return {from + op.from, op.from_stride}; }
+
+ConvertedValues converted_by(const DiffOp& op, uint32_t from) {
+  return {from + op.from, op.from_stride, op.old_type, op.new_type, {}};
+}
+
 base::Bytes initial_bytes(const InitialData& data, const UpdateStep& step) {
-  uint32_t hull = step.to_stride * (step.count - 1) + step.size;
-  if (data.is_zero(step.to, hull)) return {};
+  if (data.is_zero(step.to, static_cast<uint32_t>(step.hull()))) return {};
   base::Bytes bytes(step.total());
   for (uint32_t i = 0; i < step.count; ++i) {
-    data.read(step.to + i * step.to_stride, {bytes.data() + size_t{i} * step.size, step.size});
+    data.read(step.place(i), {bytes.data() + size_t{i} * step.size, step.size});
   }
   return bytes;
 }

@@ -11,9 +11,13 @@
 
 namespace online_change {
 
-// An op of a TypeDiff for an area that was at `from` and is at `to`: absolute offsets.
-UpdateStep step_for(const DiffOp& op, StepKind kind, uint32_t from, uint32_t to, uint32_t fate);
-// The initial bytes of all values of a kInitialise step; none when all are zero.
+// The values that an op of a TypeDiff makes, for an area that is at `to`: absolute offsets. The
+// caller says how they are made.
+UpdateStep step_for(const DiffOp& op, uint32_t to, uint32_t fate);
+// How they are copied or converted, from an area that was at `from`.
+CopiedValues copied_by(const DiffOp& op, uint32_t from);
+ConvertedValues converted_by(const DiffOp& op, uint32_t from);
+// The initial bytes of all values of a step; none when all are zero.
 base::Bytes initial_bytes(const InitialData& data, const UpdateStep& step);
 // Sorts by target and joins copies that lie side by side and move by the same distance.
 void join_steps(std::vector<UpdateStep>& steps);

@@ -48,14 +48,14 @@ void ByAddress::find_ranges() {
   for (size_t i = 0; i < plan_.steps.size(); ++i) {
     const UpdateStep& step = plan_.steps[i];
     const uint64_t last = step.count - 1;
-    written_.push_back({step.to, step.to + last * step.to_stride + step.size});
-    if (step.kind == StepKind::kInitialise) {
+    written_.push_back({step.to, step.to + step.hull()});
+    if (step.as<InitialValues>() != nullptr) {
       if (step.count == 1) initial_.emplace_back(step.to, i);
-    } else if (step.kind == StepKind::kConvert) {
-      read_.push_back(
-          {step.from, step.from + last * step.from_stride + old_.layouts[step.old_type].size});
-    } else if (step.kind == StepKind::kCopy) {
-      read_.push_back({step.from, step.from + last * step.from_stride + step.size});
+    } else if (const auto* converted = step.as<ConvertedValues>()) {
+      const uint32_t size = old_.layouts[converted->old_type].size;
+      read_.push_back({converted->from, converted->from + last * converted->from_stride + size});
+    } else if (const auto* copied = step.as<CopiedValues>()) {
+      read_.push_back({copied->from, copied->from + last * copied->from_stride + step.size});
     }
   }
   std::sort(initial_.begin(), initial_.end());
@@ -98,8 +98,7 @@ bool ByAddress::make(const AddressedVariable& variable, const AddressBits& befor
   const bool retyped = !row.old_type.empty();
   if (row.reason.starts_with("constant") || (retyped && !whole)) return false;
   UpdateStep made;
-  made.kind = StepKind::kGather;
-  made.from = static_cast<uint32_t>(plan_.gathers.size());
+  made.how = GatheredBits{static_cast<uint32_t>(plan_.gathers.size()), {}};
   made.to = variable.data;
   made.size = variable.size;
   made.fate = row_for(variable, step, whole);
@@ -133,19 +132,22 @@ uint32_t ByAddress::row_for(const AddressedVariable& variable, const UpdateStep&
 // What is left of the step lies in front of the variable and after it.
 void ByAddress::split(size_t number, const AddressedVariable& variable, UpdateStep made) {
   const UpdateStep step = plan_.steps[number];
+  const auto& initial = *step.as<InitialValues>();
+  const auto bytes = [&](uint32_t begin, uint32_t end) {
+    if (initial.bytes.empty()) return base::Bytes();
+    const auto first = initial.bytes.begin() + (begin - step.to);
+    return base::Bytes(first, first + (end - begin));
+  };
   const auto part = [&](uint32_t begin, uint32_t end) {
     UpdateStep out = step;
     out.to = begin;
     out.size = end - begin;
-    if (!step.bytes.empty()) {
-      const auto first = step.bytes.begin() + (begin - step.to);
-      out.bytes.assign(first, first + out.size);
-    }
+    out.as<InitialValues>()->bytes = bytes(begin, end);
     return out;
   };
   const uint32_t begin = variable.data;
   const uint32_t end = begin + variable.size;
-  made.bytes = part(begin, end).bytes;
+  made.as<GatheredBits>()->rest = bytes(begin, end);
   UpdateStep& front = plan_.steps[number];
   front = part(step.to, begin);
   more_.push_back(std::move(made));

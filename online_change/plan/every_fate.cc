@@ -25,21 +25,18 @@ bool is_leaf(const ir::Image& image, const std::string& path) {
 }  // namespace
 
 EveryFate::EveryFate(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image)
-    : plan_(plan),
-      old_(old_image),
-      new_(new_image),
-      old_areas_(old_image),
-      new_areas_(new_image) {
+    : plan_(plan), old_(old_image), new_(new_image), old_areas_(old_image), new_areas_(new_image) {
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
+    const std::optional<CopiedValues> source = step.source();
+    const auto* gathered = step.as<GatheredBits>();
     for (uint32_t i = 0; i < step.count; ++i) {
-      Written value{step.from + i * step.from_stride, step.to + i * step.to_stride, step.size,
+      Written value{source ? source->from + i * source->from_stride : 0, step.place(i), step.size,
                     number, i};
-      if (step.kind == StepKind::kEnter) value.from = step.from;  // the stride is another place
       by_target_.push_back(value);
-      if (has_source(step)) by_source_.push_back(value);
-      if (step.kind != StepKind::kGather) continue;
-      for (const GatheredPart& part : plan.gathers[step.from]) {
+      if (source) by_source_.push_back(value);
+      if (gathered == nullptr) continue;
+      for (const GatheredPart& part : plan.gathers[gathered->row]) {
         by_source_.push_back(
             {part.from, step.to + part.within, std::max(part.size, 1u), number, i});
       }
@@ -69,16 +66,20 @@ const EveryFate::Written* EveryFate::reads(uint32_t address) const {
                                [](uint32_t at, const Written& value) { return at < value.from; });
   if (next == by_source_.begin()) return nullptr;
   const Written& value = *--next;
-  const UpdateStep& step = plan_.steps[value.step];
-  const uint32_t size =
-      step.kind == StepKind::kConvert ? old_.layouts[step.old_type].size : value.size;
+  const auto* converted = plan_.steps[value.step].as<ConvertedValues>();
+  const uint32_t size = converted == nullptr ? value.size : old_.layouts[converted->old_type].size;
   return address - value.from < size ? &value : nullptr;
+}
+
+const Gather* EveryFate::gather_of(const UpdateStep& step) const {
+  const auto* gathered = step.as<GatheredBits>();
+  return gathered == nullptr ? nullptr : &plan_.gathers[gathered->row];
 }
 
 // What a gathered byte was, or a bit in it.
 std::optional<uint32_t> EveryFate::gathered_from(const Written& value, uint32_t address) const {
   const uint32_t within = address - value.to;
-  for (const GatheredPart& part : plan_.gathers[plan_.steps[value.step].from]) {
+  for (const GatheredPart& part : *gather_of(plan_.steps[value.step])) {
     if (within - part.within < std::max(part.size, 1u)) return part.from + (within - part.within);
   }
   return std::nullopt;
@@ -116,14 +117,15 @@ VariableFate EveryFate::of_new(const std::string& path, const ir::Symbol& symbol
   }
   out.step = &plan_.steps[value->step];
   out.index = value->index;
-  out.fate = out.step->fate != kNoFate ? plan_.fates[out.step->fate].fate
-             : has_source(*out.step) || out.step->kind == StepKind::kGather ? Fate::kMoved
-                                       : Fate::kInitialised;
+  out.gather = gather_of(*out.step);
+  const bool has_source = out.step->source().has_value();
+  out.fate = out.step->fate != kNoFate             ? plan_.fates[out.step->fate].fate
+             : has_source || out.gather != nullptr ? Fate::kMoved
+                                                   : Fate::kInitialised;
   out.reason = reason_of(out.step->fate);
-  if (has_source(*out.step)) {
+  if (has_source) {
     name_old(out, value->from + (symbol.data - value->to));
-  } else if (out.step->kind == StepKind::kGather) {
-    out.gather = &plan_.gathers[out.step->from];
+  } else if (out.gather != nullptr) {
     const base::Result<ir::Symbol> same = ir::find_symbol(old_, path);
     const std::optional<uint32_t> from = gathered_from(*value, symbol.data);
     if (from && same.ok() && same->data == *from) name_old(out, *from);
@@ -142,7 +144,7 @@ bool EveryFate::goes_on(const std::string& path, const ir::Symbol& symbol) const
   const uint32_t address = symbol.data;
   uint32_t to = address;
   if (const Written* value = reads(address)) {
-    if (plan_.steps[value->step].kind == StepKind::kGather) {
+    if (gather_of(plan_.steps[value->step]) != nullptr) {
       return taken_.all(address, uint64_t{address} + old_.layouts[symbol.type].size);
     }
     to = value->to + (address - value->from);

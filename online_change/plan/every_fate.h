@@ -25,7 +25,7 @@ struct VariableFate {
   bool loses = false;  // it had a value, and that has no place in the new version
   std::string reason;
   const UpdateStep* step = nullptr;  // that writes it; null: nothing does
-  const Gather* gather = nullptr;   // of a kGather step
+  const Gather* gather = nullptr;   // of a step that gathers
   uint32_t index = 0;                // of its value in the step
 };
 
@@ -48,12 +48,9 @@ class EveryFate {
     uint32_t step = 0;
     uint32_t index = 0;
   };
-  static bool has_source(const UpdateStep& step) {
-    return step.kind != StepKind::kInitialise && step.kind != StepKind::kMigrate &&
-           step.kind != StepKind::kGather;
-  }
   const Written* writes(uint32_t address) const;
   const Written* reads(uint32_t address) const;
+  const Gather* gather_of(const UpdateStep& step) const;  // null: no step that gathers
   std::optional<uint32_t> gathered_from(const Written& value, uint32_t address) const;
   VariableFate of_new(const std::string& path, const ir::Symbol& symbol) const;
   bool goes_on(const std::string& path, const ir::Symbol& symbol) const;

@@ -9,13 +9,15 @@ UpdateStep MigrationCalls::step(const DiffOp& op, uint32_t index, uint32_t insta
                                 uint32_t to, uint32_t fate) {
   const Migration& migration = migrations_.rows()[op.migration.migration];
   const std::vector<ir::FrameSlot>& slots = code_.pous[code_.migrations[migration.row].pou].slots;
-  UpdateStep step = step_for(op, StepKind::kMigrate, from, to, fate);
+  UpdateStep step = step_for(op, to, fate);
   step.to += index * op.to_stride;
   step.count = 1;
   step.to_stride = 0;
-  step.from = call_for(op, instance, from + op.from + index * op.from_stride, step.to - op.within);
-  step.from_stride = slots[migration.values[op.migration.value].slot].offset;
-  step.new_type = op.new_type;
+  GivenValue how;
+  how.call = call_for(op, instance, from + op.from + index * op.from_stride, step.to - op.within);
+  how.slot = slots[migration.values[op.migration.value].slot].offset;
+  how.type = op.new_type;
+  step.how = std::move(how);
   return step;
 }
 

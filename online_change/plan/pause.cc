@@ -29,9 +29,11 @@ void BoundaryWork::step(uint32_t from, uint32_t to) {
 
 bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
                      const ir::Image& new_image) {
-  if (step.kind != StepKind::kConvert) return false;
-  return !step.bytes.empty() || fast_converter(old_image.types, step.old_type, new_image.types,
-                                               step.new_type) == nullptr;
+  const auto* converted = step.as<ConvertedValues>();
+  if (converted == nullptr) return false;
+  return !converted->known.empty() ||
+         fast_converter(old_image.types, converted->old_type, new_image.types,
+                        converted->new_type) == nullptr;
 }
 
 uint64_t bools_to_normalise(const ir::Bools& before, const ir::Bools& after) {
@@ -42,8 +44,8 @@ BoundaryWork boundary_work(const Plan& plan, const ir::Image& old_image, const i
                            bool early_too) {
   BoundaryWork work;
   for (const UpdateStep& step : plan.steps) {
-    if (step.early && !early_too) continue;
-    work.step(reads_one_place(step.kind) ? step.from : 0, step.to);
+    if (step.early() && !early_too) continue;
+    work.step(step.source().value_or(CopiedValues{}).from, step.to);
     (converts_slowly(step, old_image, new_image) ? work.slow_values : work.values) += step.count;
     work.bytes += step.total();
   }

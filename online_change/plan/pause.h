@@ -50,10 +50,6 @@ struct BoundaryWork {
 };
 int64_t pause_ns(const BoundaryWork& work);
 
-// What a step of this kind reads is at UpdateStep::from.
-constexpr bool reads_one_place(StepKind kind) {
-  return kind == StepKind::kCopy || kind == StepKind::kConvert || kind == StepKind::kEnter;
-}
 // Is a value of this step converted by kPauseSlowConversionNs?
 bool converts_slowly(const UpdateStep& step, const ir::Image& old_image,
                      const ir::Image& new_image);

@@ -3,24 +3,17 @@
 namespace online_change {
 namespace {
 
-uint64_t end_of(uint32_t first, const UpdateStep& step, uint32_t stride, uint32_t size) {
-  return first + uint64_t{step.count - 1} * stride + size;
-}
-
 const char* broken_form(const Plan& plan, const UpdateStep& step) {
-  const bool makes_bytes = step.kind == StepKind::kInitialise || step.kind == StepKind::kMigrate ||
-                           step.kind == StepKind::kGather;
   if (step.count == 0 || step.size == 0) return "a step writes something";
-  if (step.early && step.kind != StepKind::kInitialise) return "only initial values come early";
-  // A conversion holds those of an edit that is taken out, which are other ones (plan.h).
-  const bool may_hold = makes_bytes || step.kind == StepKind::kConvert;
-  if (!may_hold && !step.bytes.empty()) return "what is copied has no bytes";
-  if (makes_bytes && !step.bytes.empty() && step.bytes.size() != step.total()) {
+  const base::Bytes* const bytes = step.bytes();
+  if (bytes != nullptr && !bytes->empty() && bytes->size() != step.total()) {
     return "a step has all its bytes";
   }
   if (step.fate != kNoFate && step.fate >= plan.fates.size()) return "a fate is a row";
-  if (step.kind == StepKind::kMigrate && step.from >= plan.calls.size()) return "a call is there";
-  if (step.kind == StepKind::kGather && step.from >= plan.gathers.size()) return "a row is there";
+  const auto* given = step.as<GivenValue>();
+  if (given != nullptr && given->call >= plan.calls.size()) return "a call is there";
+  const auto* gathered = step.as<GatheredBits>();
+  if (gathered != nullptr && gathered->row >= plan.gathers.size()) return "a row is there";
   return nullptr;
 }
 
@@ -29,13 +22,11 @@ const char* broken_form(const Plan& plan, const UpdateStep& step) {
 const char* broken_promise(const Plan& plan, const ir::Image& from, const ir::Image& to) {
   for (const UpdateStep& step : plan.steps) {
     if (const char* broken = broken_form(plan, step)) return broken;
-    if (end_of(step.to, step, step.to_stride, step.size) > to.data_capacity) {
-      return "a step writes inside of data memory";
-    }
-    const bool copies = step.kind == StepKind::kCopy;
-    if (copies && end_of(step.from, step, step.from_stride, step.size) > from.data_capacity) {
-      return "a step reads inside of data memory";
-    }
+    if (step.to + step.hull() > to.data_capacity) return "a step writes inside of data memory";
+    const auto* copied = step.as<CopiedValues>();
+    if (copied == nullptr) continue;
+    const uint64_t hull = uint64_t{copied->from_stride} * (step.count - 1) + step.size;
+    if (copied->from + hull > from.data_capacity) return "a step reads inside of data memory";
   }
   return nullptr;
 }

@@ -64,7 +64,7 @@ base::Result<Plan> Planner::run() {
   plan_.fates = fates_.take();
   ByAddress(old_, new_, plan_).run();
   for (const UpdateStep& step : plan_.steps) {
-    if (!step.early) plan_.boundary_bytes += step.total();
+    if (!step.early()) plan_.boundary_bytes += step.total();
   }
   plan_.predicted_pause_ns = predicted_pause_ns(plan_, old_, new_);
   expect_promises(plan_, old_, new_);
@@ -108,7 +108,7 @@ bool Planner::moves_whole(const Carried& instance) {
   whole.leaves = instance.diff->leaves;
   if (whole.size == 0) return true;
   plan_.counts.moved += whole.leaves;
-  put(step_for(whole, StepKind::kCopy, instance.from, instance.to, moved_row(instance, whole)));
+  copy(instance, whole, moved_row(instance, whole));
   finish_area();
   return true;
 }
@@ -130,9 +130,7 @@ void Planner::apply(const Carried& instance, const DiffOp& op) {
       return initialise(instance, op,
                         op.leaves == 0 ? kNoFate : row_of(instance, op.row, op.leaves));
     case DiffKind::kConvert:
-      plan_.counts.converted += op.leaves;
-      return put(step_for(op, StepKind::kConvert, instance.from, instance.to,
-                          row_of(instance, op.row, op.leaves)));
+      return convert(instance, op);
   }
 }
 
@@ -156,24 +154,35 @@ void Planner::apply_same(const Carried& instance, const DiffOp& op) {
   if (!in_place) {
     plan_.counts.moved += op.leaves;
     const bool counted = op.leaves != 0 || instance.moved();
-    return put(step_for(op, StepKind::kCopy, instance.from, instance.to,
-                        counted ? moved_row(instance, op) : kNoFate));
+    return copy(instance, op, counted ? moved_row(instance, op) : kNoFate);
   }
   plan_.counts.kept += op.leaves;
   if (!initial_equal(instance, op) || !rename_note(instance, op).empty()) note_row(instance, op);
 }
 
 void Planner::initialise(const Carried& instance, const DiffOp& op, uint32_t fate) {
-  UpdateStep step = step_for(op, StepKind::kInitialise, instance.from, instance.to, fate);
-  step.bytes = op.stamp && instance.new_id != 0 ? old_stamp() : initial_bytes(new_data_, step);
+  const UpdateStep step = step_for(op, instance.to, fate);
+  const bool stamp = op.stamp && instance.new_id != 0;
+  put_initial(step, stamp ? old_stamp() : initial_bytes(new_data_, step));
+}
+
+void Planner::copy(const Carried& instance, const DiffOp& op, uint32_t fate) {
+  UpdateStep step = step_for(op, instance.to, fate);
+  step.how = copied_by(op, instance.from);
+  put(std::move(step));
+}
+
+void Planner::convert(const Carried& instance, const DiffOp& op) {
+  plan_.counts.converted += op.leaves;
+  UpdateStep step = step_for(op, instance.to, row_of(instance, op.row, op.leaves));
+  step.how = converted_by(op, instance.from);
   put(std::move(step));
 }
 
 void Planner::enter(const Carried& instance, const DiffOp& op) {
   plan_.counts.converted += op.leaves;
-  UpdateStep step = step_for(op, StepKind::kEnter, instance.from, instance.to,
-                             row_of(instance, op.row, op.leaves));
-  step.from_stride = instance.from + op.from_stride;
+  UpdateStep step = step_for(op, instance.to, row_of(instance, op.row, op.leaves));
+  step.how = EnteredStep{instance.from + op.from, instance.from + op.from_stride};
   put(std::move(step));
 }
 
@@ -197,8 +206,7 @@ void Planner::apply_slots(const Carried& instance, const DiffOp& op) {
     bool same_id = op.has_source && old_data_.word(from) == new_data_.word(to);
     if (same_id && from == to) continue;
     if (same_id) {
-      uint32_t fate = instance.moved() ? moved_row(instance, slot) : kNoFate;
-      put(step_for(slot, StepKind::kCopy, instance.from, instance.to, fate));
+      copy(instance, slot, instance.moved() ? moved_row(instance, slot) : kNoFate);
     } else {
       initialise(instance, slot, kNoFate);
     }
@@ -209,7 +217,7 @@ void Planner::apply_slots(const Carried& instance, const DiffOp& op) {
 void Planner::apply_in_outs(const Carried& instance, const DiffOp& op) {
   bool in_place = op.has_source && instance.from + op.from == instance.to + op.to;
   if (in_place) return;
-  put(step_for(op, StepKind::kInitialise, instance.from, instance.to, kNoFate));
+  put_initial(step_for(op, instance.to, kNoFate), {});
 }
 
 void Planner::add_dropped_rows(const Carried& instance) {
@@ -236,9 +244,8 @@ void Planner::add_instance(uint32_t new_id) {
   DiffOp whole;
   whole.size = new_.layouts[instance.type].used;
   if (whole.size == 0) return;
-  UpdateStep step = step_for(whole, StepKind::kInitialise, 0, instance.data, row);
-  step.bytes = initial_bytes(new_data_, step);
-  put(std::move(step));
+  const UpdateStep step = step_for(whole, instance.data, row);
+  put_initial(step, initial_bytes(new_data_, step));
   finish_area();
 }
 
@@ -265,11 +272,13 @@ void Planner::drop_instance(uint32_t old_id) {
 void Planner::put(UpdateStep step) {
   base::dcheck(step.size != 0 && step.count != 0, "a step writes something");
   base::dcheck(step.to < new_.data_capacity, "a step writes inside of data memory");
-  if (step.kind == StepKind::kInitialise) {
-    uint64_t hull = uint64_t{step.to_stride} * (step.count - 1) + step.size;
-    step.early = !old_areas_.owns(step.to, static_cast<uint32_t>(hull));
-  }
   area_.push_back(std::move(step));
+}
+
+void Planner::put_initial(UpdateStep step, base::Bytes bytes) {
+  const bool early = !old_areas_.owns(step.to, static_cast<uint32_t>(step.hull()));
+  step.how = InitialValues{std::move(bytes), early};
+  put(std::move(step));
 }
 
 void Planner::finish_area() {

@@ -43,6 +43,8 @@ class Planner {
   void apply_slots(const Carried& instance, const DiffOp& op);
   void apply_in_outs(const Carried& instance, const DiffOp& op);
   void initialise(const Carried& instance, const DiffOp& op, uint32_t fate);
+  void copy(const Carried& instance, const DiffOp& op, uint32_t fate);
+  void convert(const Carried& instance, const DiffOp& op);
   void enter(const Carried& instance, const DiffOp& op);
   void migrate(const Carried& instance, const DiffOp& op);
   void add_dropped_rows(const Carried& instance);
@@ -67,6 +69,7 @@ class Planner {
 
   bool initial_equal(const Carried& instance, const DiffOp& op) const;
   void put(UpdateStep step);
+  void put_initial(UpdateStep step, base::Bytes bytes);  // says whether it may come early
   void finish_area();
 
   const ir::Image& old_;

@@ -150,10 +150,9 @@ std::string Planner::type_rename_hint(ir::TypeId before, ir::TypeId after) const
   const ir::Type& gone = old_.types[before];
   const ir::Type& came = new_.types[after];
   if (gone.kind != came.kind || has_type(new_, gone) || has_type(old_, came)) return {};
-  const bool same = std::equal(gone.members.begin(), gone.members.end(), came.members.begin(),
-                               came.members.end(), [](const ir::Member& a, const ir::Member& b) {
-                                 return ir::same_name(a.name, b.name);
-                               });
+  const bool same = std::equal(
+      gone.members.begin(), gone.members.end(), came.members.begin(), came.members.end(),
+      [](const ir::Member& a, const ir::Member& b) { return ir::same_name(a.name, b.name); });
   return same ? "; if `" + gone.name + "` is called `" + came.name +
                     "` now, write {renamed from := '" + gone.name + "'} before it"
               : std::string();

@@ -11,8 +11,8 @@ std::string number(int64_t value) { return std::to_string(value) + ";"; }
 
 // What the declaration says, without what the types that it names say.
 std::string declaration(const ir::TypeTable& types, const ir::Type& type) {
-  std::string out = number(static_cast<int64_t>(type.kind)) + number(type.low) +
-                    number(type.high) + number(type.capacity) + number(type.overlap ? 1 : 0);
+  std::string out = number(static_cast<int64_t>(type.kind)) + number(type.low) + number(type.high) +
+                    number(type.capacity) + number(type.overlap ? 1 : 0);
   if (type.base.valid()) out += types.text(type.base) + ";";
   for (const ir::Dimension& dim : type.dims) out += number(dim.low) + number(dim.high);
   for (const ir::EnumLiteral& literal : type.literals) {
@@ -50,8 +50,7 @@ const char* type_change_name(TypeChange change) {
   return "";
 }
 
-std::vector<TypeEdit> type_edits(const EncodedImage& old_version,
-                                 const EncodedImage& new_version) {
+std::vector<TypeEdit> type_edits(const EncodedImage& old_version, const EncodedImage& new_version) {
   std::vector<TypeEdit> edits;
   if (same_types(old_version, new_version)) return edits;
   const ir::TypeTable& old_types = old_version.image.types;

@@ -61,8 +61,9 @@ void RetainedMigrations::leave_out_unreadable() {
            " reads what is not retained: declare it RETAIN, or change online");
   }
   std::erase_if(plan_.steps, [&](UpdateStep& step) {
-    step.from = number[step.from];
-    return step.from == kNoFate;
+    uint32_t& call = step.as<GivenValue>()->call;
+    call = number[call];
+    return call == kNoFate;
   });
   plan_.calls = std::move(calls);
 }
@@ -98,8 +99,9 @@ std::string RetainedMigrations::run_on(base::ByteSpan values, base::ByteSpan as_
   (void)migrate.run_gathered([&](const base::Error& error) { failed(error.text); }).ok();
   for (const UpdateStep& step : plan_.steps) {
     const std::optional<size_t> at = to_map_.find(step.to, step.size);
-    if (!at || step.bytes.size() != step.size) continue;
-    std::copy(step.bytes.begin(), step.bytes.end(), out.begin() + static_cast<std::ptrdiff_t>(*at));
+    const base::Bytes& value = step.as<GivenValue>()->made;
+    if (!at || value.size() != step.size) continue;
+    std::copy(value.begin(), value.end(), out.begin() + static_cast<std::ptrdiff_t>(*at));
   }
   return {};
 }

@@ -90,8 +90,10 @@ class Carrier {
              uint64_t{new_area} + op.to + uint64_t{i} * op.to_stride, size);
       }
     } else if (op.kind == DiffKind::kConvert) {
-      const UpdateStep step = step_for(op, StepKind::kConvert, old_area, new_area, kNoFate);
-      for (uint32_t i = 0; i < step.count; ++i) convert(step, i);
+      const ConvertedValues how = converted_by(op, old_area);
+      for (uint32_t i = 0; i < op.count; ++i) {
+        convert(how, i, new_area + op.to + i * op.to_stride, op.size);
+      }
     }
   }
 
@@ -106,33 +108,29 @@ class Carrier {
     });
   }
 
-  void convert(const UpdateStep& step, uint32_t index) {
-    const uint32_t old_size = conversions_.source_size(step);
-    const auto source =
-        from_map_.find(uint64_t{step.from} + uint64_t{index} * step.from_stride, old_size);
-    const auto target =
-        to_map_.find(uint64_t{step.to} + uint64_t{index} * step.to_stride, step.size);
+  // Value `index`, for the `size` bytes at `to`.
+  void convert(const ConvertedValues& how, uint32_t index, uint32_t to, uint32_t size) {
+    const uint32_t from = how.from + index * how.from_stride;
+    const uint32_t old_size = conversions_.source_size(how);
+    const auto source = from_map_.find(from, old_size);
+    const auto target = to_map_.find(to, size);
     if (!source || !target) return;
     const base::ByteSpan value = values_.subspan(*source, old_size);
     std::fill_n(given_.begin() + static_cast<std::ptrdiff_t>(*source), old_size, true);
-    if (back_way_ && is_as_converted(step, index, before_.subspan(*target, step.size), value)) {
-      return;
-    }
-    (void)conversions_.convert(step, index, value.data(),
-                               std::span(out_).subspan(*target, step.size));
-    std::fill_n(carried_.begin() + static_cast<std::ptrdiff_t>(*target), step.size, true);
+    if (back_way_ && is_as_converted(how, from, before_.subspan(*target, size), value)) return;
+    (void)conversions_.convert(how, index, value.data(), to,
+                               std::span(out_).subspan(*target, size));
+    std::fill_n(carried_.begin() + static_cast<std::ptrdiff_t>(*target), size, true);
   }
 
   // Did the change make `value` of `before`, and nobody wrote it since?
-  bool is_as_converted(const UpdateStep& step, uint32_t index, base::ByteSpan before,
+  bool is_as_converted(const ConvertedValues& how, uint32_t from, base::ByteSpan before,
                        base::ByteSpan value) const {
-    UpdateStep there = step;
-    std::swap(there.from, there.to);
-    std::swap(there.from_stride, there.to_stride);
-    std::swap(there.old_type, there.new_type);
-    there.size = static_cast<uint32_t>(value.size());
+    ConvertedValues there;
+    there.old_type = how.new_type;
+    there.new_type = how.old_type;
     base::Bytes converted(value.size());
-    (void)back_.convert(there, index, before.data(), converted);
+    (void)back_.convert(there, 0, before.data(), from, converted);
     return std::equal(value.begin(), value.end(), converted.begin());
   }
 

@@ -10,11 +10,11 @@ PROGRAM Main
 VAR n, zero, q, i : DINT; late : INT; r : LREAL; slow : BOOL; level AT %IW0 : WORD; lamp AT %QX0.0 : BOOL; END_VAR
 n := n + 1;
 IF zero = 1 THEN zero := 0; q := n / zero; END_IF
-IF late > 0 THEN late := late - 1; FOR i := 1 TO 100000 DO r := SIN(r) + EXP(COS(r)) + LN(3.0 + r * r); END_FOR END_IF
+IF late > 0 THEN late := late - 1; FOR i := 1 TO 30000 DO r := SIN(r) + EXP(COS(r)) + LN(3.0 + r * r); END_FOR END_IF
 IF slow THEN slow := FALSE; FOR i := 1 TO 2000000000 DO r := SIN(r) + EXP(COS(r)) + LN(3.0 + r * r); END_FOR END_IF
 END_PROGRAM
 CONFIGURATION c RESOURCE r ON cpu
-  {attribute 'on_trap' := 'go_on'} {attribute 'watchdog' := 'T#250ms'} TASK Fast (INTERVAL := T#2ms);
+  {attribute 'on_trap' := 'go_on'} {attribute 'watchdog' := 'T#2s'} TASK Fast (INTERVAL := T#2ms);
   PROGRAM P WITH Fast : Main;
 END_RESOURCE END_CONFIGURATION
 ST

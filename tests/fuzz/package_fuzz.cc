@@ -14,6 +14,7 @@
 #include "base/hash.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/change.h"
+#include "online_change/package/stored_step.h"
 #include "tests/fuzz/image_changes.h"
 #include "tests/fuzz/versions.h"
 #include "vm/runtime/clocks.h"
@@ -33,41 +34,46 @@ constexpr uint64_t kMostData = uint64_t{16} << 20;  // of versions that declare 
 
 // --- changes to a package -------------------------------------------------------------
 
-void change_step(UpdateStep& step, const fuzz::Change& change) {
+// What a package with other bytes says, unless it cannot be read then.
+void change_step(UpdateStep& changed, const fuzz::Change& change) {
+  StoredStep step = stored(changed);
+  base::Bytes bytes = changed.bytes() == nullptr ? base::Bytes() : *changed.bytes();
   uint32_t* const numbers[] = {
       &step.from,        &step.to,        &step.size,           &step.count,
       &step.from_stride, &step.to_stride, &step.old_type.index, &step.new_type.index,
       &step.fate};
   switch (change.how / 4 % 16) {
     case 0:
-      step.kind = static_cast<StepKind>(change.value % 5);
-      return;
+      step.kind = static_cast<StepKind>(change.value % 6);
+      break;
     case 1:
       step.early = !step.early;
-      return;
+      break;
     case 2:
-      step.bytes.resize(change.value % 32);
-      return;
+      bytes.resize(change.value % 32);
+      break;
     case 3:
-      if (uint8_t* byte = pick(step.bytes, change.where / 16)) alter(*byte, change);
-      return;
+      if (uint8_t* byte = pick(bytes, change.where / 16)) alter(*byte, change);
+      break;
     default:
       alter(*numbers[change.how / 4 % std::size(numbers)], change);
   }
+  if (auto read = from_stored(step, std::move(bytes))) changed = std::move(*read);
 }
 
 // One that is like others, but nobody asked for.
 UpdateStep made_step(const Plan& plan, const fuzz::Change& change) {
-  UpdateStep step;
-  if (!plan.steps.empty()) step = plan.steps[change.where % plan.steps.size()];
-  step.kind = static_cast<StepKind>(change.how / 4 % 5);
+  UpdateStep like;
+  if (!plan.steps.empty()) like = plan.steps[change.where % plan.steps.size()];
+  StoredStep step = stored(like);
+  step.kind = static_cast<StepKind>(change.how / 4 % 6);
   // Among the others, in holes and slack too.
   const uint32_t last = plan.steps.empty() ? 1024 : plan.steps.back().to + 64;
   step.to = change.value % last / 4 * 4;
-  if (step.kind != StepKind::kInitialise) step.bytes.clear();
   step.early = false;
-  if (step.kind == StepKind::kMigrate) step.from = 0;
-  return step;
+  if (step.kind == StepKind::kMigrate || step.kind == StepKind::kGather) step.from = 0;
+  const bool initial = step.kind == StepKind::kInitialise && like.bytes() != nullptr;
+  return *from_stored(step, initial ? *like.bytes() : base::Bytes());
 }
 
 void change_list(Plan& plan, const fuzz::Change& change) {

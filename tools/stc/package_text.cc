@@ -42,8 +42,9 @@ std::string variable_at(const online_change::Areas& areas, uint32_t at) {
 }
 
 std::string types_of(const UpdateStep& step, const ir::Image& from, const ir::Image& to) {
-  if (step.kind != StepKind::kConvert) return {};
-  return from.types.text(step.old_type) + " -> " + to.types.text(step.new_type);
+  const auto* how = step.as<online_change::ConvertedValues>();
+  if (how == nullptr) return {};
+  return from.types.text(how->old_type) + " -> " + to.types.text(how->new_type);
 }
 
 std::string direction_text(const char* title, const Plan& plan, const ir::Image& from,
@@ -51,12 +52,11 @@ std::string direction_text(const char* title, const Plan& plan, const ir::Image&
   const online_change::Areas areas(to);
   tools::Table table({"record", "> from", "> to", "> bytes", "> count", "when", "variable"});
   for (const UpdateStep& step : plan.steps) {
-    const bool source = step.kind == StepKind::kCopy || step.kind == StepKind::kConvert ||
-                        step.kind == StepKind::kEnter;
+    const auto source = step.source();
     const std::string types = types_of(step, from, to);
-    table.row({kind_text(step.kind), source ? std::to_string(step.from) : "",
+    table.row({kind_text(step.kind()), source ? std::to_string(source->from) : "",
                std::to_string(step.to), std::to_string(step.size), std::to_string(step.count),
-               step.early ? "before" : "boundary",
+               step.early() ? "before" : "boundary",
                variable_at(areas, step.to) + (types.empty() ? "" : " : " + types)});
   }
   std::string out = std::string(title) + ": " + std::to_string(plan.steps.size()) +

@@ -61,9 +61,11 @@ std::vector<const UpdateStep*> with_bytes(const online_change::Plan& plan, uint6
   std::vector<const UpdateStep*> steps(end - std::min(first, end));
   for (const UpdateStep& step : plan.steps) {
     if (step.fate == online_change::kNoFate || step.fate < first || step.fate >= end) continue;
-    const bool alone = step.count == 1 && !step.bytes.empty();
-    const bool known = step.kind == StepKind::kInitialise || step.kind == StepKind::kConvert;
-    if (alone && known) steps[step.fate - first] = &step;
+    const auto* initial = step.as<online_change::InitialValues>();
+    const auto* converted = step.as<online_change::ConvertedValues>();
+    const bool has = (initial != nullptr && !initial->bytes.empty()) ||
+                     (converted != nullptr && !converted->known.empty());
+    if (step.count == 1 && has) steps[step.fate - first] = &step;
   }
   return steps;
 }

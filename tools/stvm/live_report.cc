@@ -25,10 +25,11 @@ std::string why_lost(const online_change::VariableFate& variable, const ir::Imag
 void initial_value(const online_change::VariableFate& variable, const ir::Image& next,
                    base::Bytes& value) {
   const online_change::UpdateStep& step = *variable.step;
-  const uint32_t to = step.to + variable.index * step.to_stride;
-  const size_t at = size_t{variable.index} * step.size + (variable.new_address - to);
-  if (at + value.size() <= step.bytes.size()) {
-    std::memcpy(value.data(), step.bytes.data() + at, value.size());
+  const base::Bytes& bytes = step.as<online_change::InitialValues>()->bytes;
+  const size_t at =
+      size_t{variable.index} * step.size + (variable.new_address - step.place(variable.index));
+  if (at + value.size() <= bytes.size()) {
+    std::memcpy(value.data(), bytes.data() + at, value.size());
   } else {
     online_change::InitialData(next).read(variable.new_address, value);
   }
@@ -70,27 +71,27 @@ const online_change::LiveLoss* LiveReport::loss(const std::string& path) const {
 // "" where only the switch knows it: what a migration or an input gives.
 std::string LiveReport::result_of(const online_change::VariableFate& variable,
                                   const std::string& now, const ir::Image& next) const {
-  using online_change::StepKind;
   if (variable.new_address == 0) return {};
-  if (variable.step == nullptr || variable.step->kind == StepKind::kCopy) return now;
+  const online_change::UpdateStep* const step = variable.step;
+  if (step == nullptr || step->as<online_change::CopiedValues>() != nullptr) return now;
   ir::Symbol alone;
   alone.type = variable.new_type;
   if (const auto there = ir::find_symbol(next, variable.path); there.ok()) {
     alone.bit_mask = there->bit_mask;
   }
   base::Bytes value(next.layouts[variable.new_type].size);
-  if (variable.step->kind == StepKind::kInitialise) {
+  if (step->as<online_change::InitialValues>() != nullptr) {
     const base::Result<ir::Symbol> there = ir::find_symbol(next, variable.path);
     if (there.ok() && there->input) return {};  // the plant says it
     initial_value(variable, next, value);
-  } else if (variable.step->kind == StepKind::kConvert) {
+  } else if (const auto* converted = step->as<online_change::ConvertedValues>()) {
     const uint8_t* source = copy_.memory().data() + variable.old_address;
     const online_change::Conversions rules(image(), next);
-    rules.convert(*variable.step, variable.index, source, value);
+    rules.convert(*converted, variable.index, source, variable.new_address, value);
   } else if (variable.gather != nullptr) {
     online_change::InitialData(next).read(variable.new_address, value);
     online_change::gather(*variable.gather, copy_.memory().data(),
-                          variable.new_address - variable.step->to, value);
+                          variable.new_address - step->to, value);
   } else {
     return {};
   }
@@ -110,7 +111,7 @@ std::string LiveReport::result_of(const online_change::FateRow& row,
   if (!leaf) return {};
   online_change::VariableFate variable;
   variable.path = row.path;
-  variable.old_address = step.from;
+  variable.old_address = step.source().value_or(online_change::CopiedValues{}).from;
   variable.new_address = step.to;
   variable.new_type = there->type;
   variable.step = &step;

@@ -8,7 +8,7 @@ namespace {
 
 UpdateStep copy(uint32_t from, uint32_t to, uint32_t size) {
   UpdateStep step;
-  step.from = from;
+  step.how = CopiedValues{from, 0};
   step.to = to;
   step.size = size;
   return step;

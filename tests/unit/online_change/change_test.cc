@@ -141,7 +141,7 @@ TEST(Change, C1_A19_every_step_can_fail_where_version_1_is_written_over) {
   plant.change(kFullToo, true);
   EXPECT_EQ(plant.controller().image().instances[1].data, before.instances[1].data);
   EXPECT_TRUE(std::none_of(plant.plan().steps.begin(), plant.plan().steps.end(),
-                           [](const UpdateStep& step) { return step.early; }));
+                           [](const UpdateStep& step) { return step.early(); }));
   EXPECT_EQ(plant.get("Main.x"), "23.0");
   EXPECT_EQ(plant.get("Main.a[1]"), "5");
   EXPECT_GT(fail_at_every_step(kFull, kFullToo, no_slack(), "35.0"), 10);
@@ -181,7 +181,7 @@ TEST(Change, V17_the_controller_takes_no_plan_that_does_not_fit) {
     Package package = *decode(sound);
     Plan& plan = back ? package.inverse : package.forward;
     for (UpdateStep& step : plan.steps) {
-      if (step.kind == StepKind::kCopy) step.from += 2;
+      if (auto* copied = step.as<CopiedValues>()) copied->from += 2;
     }
     EXPECT_EQ(plant.stage(encode(package)).error().refusal, Refusal::kBadPackage);
     package = *decode(sound);

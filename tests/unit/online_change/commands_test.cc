@@ -57,12 +57,16 @@ TEST(Commands, C3_what_is_added_or_retyped_has_one_and_nothing_else_has) {
   for (const UpdateStep& step : plant.plan().steps) {
     for (uint32_t i = 0; i < step.count; ++i) {
       for (uint32_t b = 0; b < step.size; ++b) {
-        const auto owner = at.find(step.to + i * step.to_stride + b);
+        const auto owner = at.find(step.place(i) + b);
         ASSERT_NE(owner, at.end()) << "a command for what is unchanged or removed";
         ++bytes[owner->second];
       }
     }
-    EXPECT_EQ(step.from, step.kind == StepKind::kConvert ? wide : 0);
+    const auto* converted = step.as<ConvertedValues>();
+    EXPECT_EQ(step.source().has_value(), converted != nullptr);
+    if (converted != nullptr) {
+      EXPECT_EQ(converted->from, wide);
+    }
   }
   EXPECT_EQ(bytes.size(), 2u);
   EXPECT_EQ(bytes["Main.wide"], 4u);

@@ -103,10 +103,11 @@ TEST(Migrations, X2_V17_calls_take_and_give_values_of_their_types_only) {
   };
   const auto migrated = [](Plan& plan) -> UpdateStep& {
     for (UpdateStep& step : plan.steps) {
-      if (step.kind == StepKind::kMigrate) return step;
+      if (step.as<GivenValue>() != nullptr) return step;
     }
     return plan.steps[0];
   };
+  const auto given = [&](Plan& plan) -> GivenValue& { return *migrated(plan).as<GivenValue>(); };
   EXPECT_TRUE(sound([](Plan&) {}));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].row = 1; }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].instance = 99; }));
@@ -121,14 +122,14 @@ TEST(Migrations, X2_V17_calls_take_and_give_values_of_their_types_only) {
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs[0].type = ir::TypeId(0); }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls[0].inputs.pop_back(); }));
   EXPECT_FALSE(sound([](Plan& plan) { plan.calls.clear(); }));
-  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).from = 7; }));
-  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).from_stride = 0xffff; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { given(plan).call = 7; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { given(plan).slot = 0xffff; }));
   EXPECT_FALSE(
-      sound([&](Plan& plan) { migrated(plan).from_stride = plan.calls[0].inputs[0].slot; }));
+      sound([&](Plan& plan) { given(plan).slot = plan.calls[0].inputs[0].slot; }));
   EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).to += 1; }));
   EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).size = 1; }));
-  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).bytes = {1, 2}; }));
-  EXPECT_FALSE(sound([&](Plan& plan) { migrated(plan).early = true; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { given(plan).made = {1, 2}; }));
+  EXPECT_FALSE(sound([&](Plan& plan) { given(plan).type = ir::TypeId(9999); }));
 }
 
 // What a damaged image says of its migrations.

@@ -1,6 +1,7 @@
 // The change package: its form (C4), and V17: a plan that does not fit the two
 // images is refused, whatever is wrong with it.
 #include "online_change/package/package.h"
+#include "online_change/package/stored_step.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +59,7 @@ base::Status check(const Pair& pair) {
 
 UpdateStep& first_step(Package& package, StepKind kind) {
   for (UpdateStep& step : package.forward.steps) {
-    if (step.kind == kind) return step;
+    if (step.kind() == kind) return step;
   }
   ADD_FAILURE() << "no such step";
   return package.forward.steps[0];
@@ -200,13 +201,17 @@ TEST(Package, V17_double_target) {
   expect_refused(*pair, "is written twice");
 }
 
+CopiedValues& first_copy(Package& package) {
+  return *first_step(package, StepKind::kCopy).as<CopiedValues>();
+}
+
 TEST(Package, V17_copy_from_elsewhere) {
   auto pair = make_pair();
-  first_step(pair->package, StepKind::kCopy).from += 2;
+  first_copy(pair->package).from += 2;
   EXPECT_FALSE(check(*pair).ok());
-  first_step(pair->package, StepKind::kCopy).from = 1u << 19;
+  first_copy(pair->package).from = 1u << 19;
   expect_refused(*pair, "is read from outside of any area");
-  first_step(pair->package, StepKind::kCopy).from = 0xfffffff0u;
+  first_copy(pair->package).from = 0xfffffff0u;
   expect_refused(*pair, "is read outside of memory");
 }
 
@@ -220,18 +225,17 @@ TEST(Package, V17_target_elsewhere) {
 
 TEST(Package, V17_wrong_types) {
   auto pair = make_pair();
-  UpdateStep& step = first_step(pair->package, StepKind::kConvert);
-  step.old_type = pair->a.elementary(Kind::kUint);
+  auto& how = *first_step(pair->package, StepKind::kConvert).as<ConvertedValues>();
+  how.old_type = pair->a.elementary(Kind::kUint);
   expect_refused(*pair, "is converted between other types than its own");
-  step.old_type = ir::TypeId(100000);
+  how.old_type = ir::TypeId(100000);
   expect_refused(*pair, "has no known type");
 }
 
 TEST(Package, V17_wrong_initial_value_or_slot) {
   auto pair = make_pair();
   for (UpdateStep& step : pair->package.forward.steps) {
-    if (step.kind != StepKind::kInitialise) continue;
-    step.bytes.assign(step.total(), 0x55);
+    if (auto* initial = step.as<InitialValues>()) initial->bytes.assign(step.total(), 0x55);
   }
   expect_refused(*pair, "is initialised with something else than its initial value");
 }
@@ -240,8 +244,9 @@ TEST(Package, V17_early_step_on_bytes_in_use) {
   auto pair = make_pair();
   bool changed = false;
   for (UpdateStep& step : pair->package.forward.steps) {
-    if (step.kind != StepKind::kInitialise || step.early) continue;
-    step.early = true;  // the constant, which version 1 still reads
+    auto* const initial = step.as<InitialValues>();
+    if (initial == nullptr || initial->early) continue;
+    initial->early = true;  // the constant, which version 1 still reads
     changed = true;
   }
   ASSERT_TRUE(changed);
@@ -254,9 +259,8 @@ TEST(Package, V17_gathered_bytes) {
   Plan& plan = pair->package.forward;
   UpdateStep& step = first_step(pair->package, StepKind::kInitialise);
   const uint32_t from = ir::find_symbol(pair->a.image, "Main.x")->data;
-  step.kind = StepKind::kGather;
-  step.from = 0;
-  step.early = false;
+  step.how = GatheredBits{0, step.as<InitialValues>()->bytes};
+  auto& gathered = *step.as<GatheredBits>();
   plan.gathers = {{{from, 0, 2}, {from, 1, 0, 1, 8}}};
   ASSERT_TRUE(check(*pair).ok()) << check(*pair).error().text;
   plan.gathers[0][0].within = step.size - 1;
@@ -266,21 +270,17 @@ TEST(Package, V17_gathered_bytes) {
   plan.gathers[0][0] = {0xfffffff0u, 0, 0xffu};
   EXPECT_FALSE(check(*pair).ok());
   plan.gathers[0][0] = {from, 0, 2};
-  step.from = 1;
+  gathered.row = 1;
   expect_refused(*pair, "has a step of another form that gathers bytes");
-  step.from = 0;
-  step.early = true;
-  expect_refused(*pair, "has a step of another form that gathers bytes");
-  step.early = false;
-  step.bytes.assign(step.total(), 0x55);
+  gathered.row = 0;
+  gathered.rest.assign(step.total(), 0x55);
   expect_refused(*pair, "is initialised with something else than its initial value");
 }
 
 TEST(Package, V17_gathered_bytes_are_in_no_slot) {
   auto pair = make_pair();
   UpdateStep& step = first_step(pair->package, StepKind::kCopy);  // an instance's variables or slot
-  step.kind = StepKind::kGather;
-  step.from = 0;
+  step.how = GatheredBits{0, {}};
   pair->package.forward.gathers = {{{ir::find_symbol(pair->a.image, "Main.x")->data, 0, 1}}};
   EXPECT_FALSE(check(*pair).ok());
 }
@@ -304,7 +304,10 @@ TEST(Package, C4_gathered_bytes_survive_and_every_truncation_is_refused) {
   }
 }
 
-void mutate(UpdateStep& step, std::mt19937& random) {
+// What a package with other bytes says; false: it cannot be read.
+bool mutate(UpdateStep& changed, std::mt19937& random) {
+  StoredStep step = stored(changed);
+  base::Bytes bytes = changed.bytes() == nullptr ? base::Bytes() : *changed.bytes();
   uint32_t* const kFields[] = {
       &step.from,        &step.to,        &step.size,           &step.count,
       &step.from_stride, &step.to_stride, &step.old_type.index, &step.new_type.index};
@@ -324,8 +327,11 @@ void mutate(UpdateStep& step, std::mt19937& random) {
       break;
     default:
       step.early = !step.early;
-      if (!step.bytes.empty()) step.bytes[random() % step.bytes.size()] ^= 1;
+      if (!bytes.empty()) bytes[random() % bytes.size()] ^= 1;
   }
+  auto read = from_stored(step, std::move(bytes));
+  if (read) changed = std::move(*read);
+  return read.has_value();
 }
 
 // Whatever passes the check keeps every instance slot right and stays inside memory (the latter is
@@ -338,8 +344,9 @@ TEST(Package, V17_what_passes_is_harmless) {
     Package package = pair->package;
     std::vector<UpdateStep>& steps = package.forward.steps;
     uint32_t changes = 1 + random() % 2;
-    for (uint32_t i = 0; i < changes; ++i) mutate(steps[random() % steps.size()], random);
-    if (!check_package(package, pair->a.image, pair->b.image).ok()) continue;
+    bool read = true;
+    for (uint32_t i = 0; i < changes; ++i) read &= mutate(steps[random() % steps.size()], random);
+    if (!read || !check_package(package, pair->a.image, pair->b.image).ok()) continue;
     ++passed;
     hand_made::Running running(pair->a);
     std::vector<uint8_t>& memory = running.memory();
@@ -376,10 +383,14 @@ TEST(Package, V17_values_made_for_no_variable) {
     const uint32_t main = pair->b.image.program_ids().front();
     ASSERT_LE(areas.used(main) + 16, areas.capacity(main));
     UpdateStep step = first_step(pair->package, StepKind::kConvert);
-    step.kind = kind;
+    const auto& like = *step.as<ConvertedValues>();
+    if (kind == StepKind::kEnter) {
+      step.how = EnteredStep{like.from, 0xfffffff0u};
+    } else {
+      step.how = ConvertedValues{like.from, 0xfffffff0u, like.old_type, like.new_type, {}};
+    }
     step.count = 1;
     step.to = areas.begin(main) + areas.used(main) + 8;  // in the slack
-    step.from_stride = 0xfffffff0u;
     step.fate = kNoFate;
     pair->package.forward.steps.push_back(step);
     expect_refused(*pair, "is made, but no variable is there");
@@ -397,6 +408,22 @@ TEST(Package, V17_absurd_counts) {
   step.count = 2;
   step.to_stride = 1;
   expect_refused(*pair, "is written twice");
+}
+
+// Early bytes, or any, where a step has no place for them.
+TEST(Package, V17_a_step_that_mixes_copying_and_initialising_is_damage) {
+  auto pair = make_pair();
+  for (const UpdateStep& step : pair->package.forward.steps) {
+    StoredStep mixed = stored(step);
+    EXPECT_TRUE(from_stored(mixed, {}));
+    const bool initial = step.kind() == StepKind::kInitialise;
+    EXPECT_EQ(from_stored(mixed, {1}).has_value(), initial || step.kind() == StepKind::kGather);
+    mixed.early = true;
+    EXPECT_EQ(from_stored(mixed, {}).has_value(), initial);
+  }
+  UpdateStep& convert = first_step(pair->package, StepKind::kConvert);
+  convert.as<ConvertedValues>()->known.assign(convert.total(), 1);
+  expect_refused(*pair, "is converted to what only a controller knows");
 }
 
 TEST(Package, V17_fate_without_row) {

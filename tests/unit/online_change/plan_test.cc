@@ -72,7 +72,7 @@ TEST(Plan, A2_A15_A19_added_variable_is_initialised_early) {
   EXPECT_EQ(run.get("Main.z"), "0");
   EXPECT_EQ(plan.counts.kept, 1u);
   EXPECT_EQ(plan.counts.initialised, 2u);
-  for (const UpdateStep& step : plan.steps) EXPECT_TRUE(step.early);
+  for (const UpdateStep& step : plan.steps) EXPECT_TRUE(step.early());
   EXPECT_EQ(plan.boundary_bytes, 0u);
   EXPECT_EQ(find_row(plan, "Main.y")->reason, "new");
   // Case 11: the live value stays, and the report says so.

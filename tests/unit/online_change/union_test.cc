@@ -37,8 +37,9 @@ TEST(Unions, V17_case74_a_grown_union_with_other_bytes_behind_is_refused) {
   Package package = package_of(plant);
   bool found = false;
   for (UpdateStep& step : package.forward.steps) {
-    if (step.kind != StepKind::kInitialise) continue;
-    step.bytes.assign(step.total(), 0x55);
+    auto* const initial = step.as<InitialValues>();
+    if (initial == nullptr) continue;
+    initial->bytes.assign(step.total(), 0x55);
     found = true;
   }
   ASSERT_TRUE(found);
@@ -52,7 +53,7 @@ TEST(Unions, V17_case74_a_grown_union_without_bytes_behind_is_refused) {
   Plant plant(kSmall);
   Package package = package_of(plant);
   std::erase_if(package.forward.steps,
-                [](const UpdateStep& step) { return step.kind == StepKind::kInitialise; });
+                [](const UpdateStep& step) { return step.as<InitialValues>() != nullptr; });
   EXPECT_FALSE(plant.stage(encode(package)).ok());
 }
 
