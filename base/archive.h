@@ -1,10 +1,11 @@
 // One list of fields for both directions: a function template takes an archive and a value, and
 // WriteArchive or ReadArchive does the rest, with bounds and enumerators checked in one place.
-// Packages and messages use these; images have faster ones (ir/bytecode/image_archive.h).
+// Packages, messages and images (ir/bytecode/image_archive.h) are written and read by these.
 #pragma once
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -13,8 +14,12 @@
 
 namespace base {
 
-class WriteArchive {
+// `Out`: a ByteWriter, or what has its functions.
+template <class Out>
+class WriteArchiveOn {
  public:
+  template <class... Args>
+  explicit WriteArchiveOn(Args&&... args) : out_(std::forward<Args>(args)...) {}
   void operator()(const bool& v) { out_.boolean(v); }
   void operator()(const uint8_t& v) { out_.u8(v); }
   void operator()(const uint16_t& v) { out_.u16(v); }
@@ -32,6 +37,10 @@ class WriteArchive {
   void enumerator(const E& v, E) {
     out_.u8(static_cast<uint8_t>(v));
   }
+  template <class E>
+  void enumerator(const E& v, uint32_t) {
+    out_.u8(static_cast<uint8_t>(v));
+  }
   // `min_bytes`: of the smallest element.
   template <class T, class Each>
   void list(const std::vector<T>& v, size_t, Each&& each) {
@@ -41,19 +50,26 @@ class WriteArchive {
   Bytes take() { return out_.take(); }
 
  protected:
-  ByteWriter out_;
+  Out out_;
 };
+using WriteArchive = WriteArchiveOn<ByteWriter>;
 
-class ReadArchive {
+// `In`: a ByteReader, or a reference to one.
+template <class In>
+class ReadArchiveOn {
  public:
-  explicit ReadArchive(ByteSpan bytes) : in_(bytes) {}
+  explicit ReadArchiveOn(ByteSpan bytes) : in_(bytes) {}
+  explicit ReadArchiveOn(ByteReader& in) : in_(in) {}
   void operator()(bool& v) { v = in_.boolean(); }
   void operator()(uint8_t& v) { v = in_.u8(); }
   void operator()(uint16_t& v) { v = in_.u16(); }
   void operator()(uint32_t& v) { v = in_.u32(); }
   void operator()(uint64_t& v) { v = in_.u64(); }
   void operator()(int64_t& v) { v = in_.i64(); }
-  void operator()(std::string& v) { v = in_.text(); }
+  void operator()(std::string& v) {
+    const ByteSpan bytes = in_.blob();
+    if (!bytes.empty()) v.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
   void operator()(Bytes& v) {
     const ByteSpan bytes = in_.blob();
     v.assign(bytes.begin(), bytes.end());
@@ -66,10 +82,14 @@ class ReadArchive {
   void operator()(Id<Tag>& v) {
     v = Id<Tag>(in_.u32());
   }
-  // Up to `last`; everything else is damage.
+  // Up to `last`, or one of the first `count`; everything else is damage.
   template <class E>
   void enumerator(E& v, E last) {
-    v = in_.enumerator<E>(static_cast<uint32_t>(last) + 1);
+    enumerator(v, static_cast<uint32_t>(last) + 1);
+  }
+  template <class E>
+  void enumerator(E& v, uint32_t count) {
+    v = in_.template enumerator<E>(count);
   }
   // Every element takes at least `min_bytes`, so a hostile count asks for no memory.
   template <class T, class Each>
@@ -82,7 +102,8 @@ class ReadArchive {
   void fail() { in_.fail(); }
 
  protected:
-  ByteReader in_;
+  In in_;
 };
+using ReadArchive = ReadArchiveOn<ByteReader>;
 
 }  // namespace base

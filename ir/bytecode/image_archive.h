@@ -8,52 +8,81 @@
 #include <utility>
 #include <vector>
 
-#include "base/bytes.h"
+#include "base/archive.h"
 #include "ir/bytecode/image.h"
 
 namespace ir {
 
 // As base::ByteWriter; the fields of a large image are many, so they are gathered first.
-class ImageWriter {
+class GatheringWriter {
  public:
   // `expected` bytes, or some more: what is not written takes no memory.
-  explicit ImageWriter(size_t expected) { bytes_.reserve(expected); }
-  ImageWriter(const ImageWriter&) = delete;
-  ImageWriter& operator=(const ImageWriter&) = delete;
-  void operator()(const bool& v) { number(static_cast<uint8_t>(v ? 1 : 0)); }
-  void operator()(const uint8_t& v) { number(v); }
-  void operator()(const uint16_t& v) { number(v); }
-  void operator()(const uint32_t& v) { number(v); }
-  void operator()(const uint64_t& v) { number(v); }
-  void operator()(const int64_t& v) { number(v); }
-  void operator()(const std::string& v) {
-    count(v.size());
-    raw(base::as_bytes(v));
+  explicit GatheringWriter(size_t expected) { bytes_.reserve(expected); }
+  GatheringWriter(const GatheringWriter&) = delete;
+  GatheringWriter& operator=(const GatheringWriter&) = delete;
+
+  void u8(uint8_t v) { fixed(v); }
+  void u16(uint16_t v) { fixed(v); }
+  void u32(uint32_t v) { fixed(v); }
+  void u64(uint64_t v) { fixed(v); }
+  void i64(int64_t v) { fixed(v); }
+  void boolean(bool v) { u8(v ? 1 : 0); }
+  void raw(base::ByteSpan v) {
+    if (v.size() > sizeof gathered_ - used_) flush();
+    if (v.size() > sizeof gathered_) {
+      bytes_.insert(bytes_.end(), v.begin(), v.end());
+    } else if (!v.empty()) {
+      std::memcpy(gathered_ + used_, v.data(), v.size());
+      used_ += v.size();
+    }
   }
-  void operator()(const base::Bytes& v) {
-    count(v.size());
+  void blob(base::ByteSpan v) {
+    u32(static_cast<uint32_t>(v.size()));
     raw(v);
   }
-  void operator()(const base::Digest& v) { raw(v); }
-  template <class Tag>
-  void operator()(const base::Id<Tag>& v) {
-    number(v.index);
+  void text(std::string_view v) { blob(base::as_bytes(v)); }
+  size_t size() const { return bytes_.size() + used_; }
+  void patch_u32(size_t at, uint32_t v) {
+    flush();
+    std::memcpy(bytes_.data() + at, &v, sizeof v);
   }
-  template <class E>
-  void enumerator(const E& v, uint32_t) {
-    number(static_cast<uint8_t>(v));
+  base::Bytes take() {
+    flush();
+    return std::move(bytes_);
   }
+
+ private:
+  template <class T>
+  [[gnu::always_inline]] void fixed(T v) {
+    if (sizeof v > sizeof gathered_ - used_) flush();
+    std::memcpy(gathered_ + used_, &v, sizeof v);
+    used_ += sizeof v;
+  }
+  void flush() {
+    bytes_.insert(bytes_.end(), gathered_, gathered_ + used_);
+    used_ = 0;
+  }
+
+  base::Bytes bytes_;
+  uint8_t gathered_[4096];
+  size_t used_ = 0;  // of these
+};
+
+class ImageWriter : public base::WriteArchiveOn<GatheringWriter> {
+ public:
+  using WriteArchiveOn::list;
+  explicit ImageWriter(size_t expected) : WriteArchiveOn(expected) {}
   // Two in one byte, the second in its upper half: where that is the first enumerator, the byte is
   // what it was before the format had it.
   template <class L, class U>
   void enumerators(const L& lower, uint32_t, const U& upper, uint32_t) {
-    number(static_cast<uint8_t>(static_cast<uint8_t>(lower) | static_cast<uint8_t>(upper) << 4));
+    out_.u8(static_cast<uint8_t>(static_cast<uint8_t>(lower) | static_cast<uint8_t>(upper) << 4));
   }
   // At the end of a section: the first enumerator takes no byte, so a section that has it is what
   // it was before the format had this field.
   template <class E>
   void last_enumerator(const E& v, uint32_t) {
-    if (v != E{}) number(static_cast<uint8_t>(v));
+    if (v != E{}) out_.u8(static_cast<uint8_t>(v));
   }
   // Likewise: no bytes for no records.
   template <class T, class Each>
@@ -64,12 +93,6 @@ class ImageWriter {
   void last_list(const base::SharedVector<T>& v, size_t min_size, Each&& each) {
     last_list(v.all(), min_size, each);
   }
-  // `min_size`: bytes of the smallest record.
-  template <class T, class Each>
-  void list(const std::vector<T>& v, size_t, Each&& each) {
-    count(v.size());
-    for (const T& item : v) each(item);
-  }
   template <class T, class Each>
   void list(const base::SharedVector<T>& v, size_t min_size, Each&& each) {
     list(v.all(), min_size, each);
@@ -78,7 +101,7 @@ class ImageWriter {
   template <class T>
   void plain_list(const std::vector<T>& v) {
     static_assert(std::has_unique_object_representations_v<T>);
-    count(v.size());
+    out_.u32(static_cast<uint32_t>(v.size()));
     raw({reinterpret_cast<const uint8_t*>(v.data()), v.size() * sizeof(T)});
   }
   template <class T>
@@ -93,49 +116,19 @@ class ImageWriter {
     return true;
   }
 
-  void raw(base::ByteSpan v) {
-    if (v.size() > sizeof gathered_ - used_) flush();
-    if (v.size() > sizeof gathered_) {
-      bytes_.insert(bytes_.end(), v.begin(), v.end());
-    } else if (!v.empty()) {
-      std::memcpy(gathered_ + used_, v.data(), v.size());
-      used_ += v.size();
-    }
-  }
-  size_t size() const { return bytes_.size() + used_; }
+  void raw(base::ByteSpan v) { out_.raw(v); }
+  size_t size() const { return out_.size(); }
   // The same, from the beginning of the section.
   size_t at() const { return size() - section_; }
   void begin_section() { section_ = size(); }
   // What was written before.
-  void patch_u32(size_t at, uint32_t v) {
-    flush();
-    std::memcpy(bytes_.data() + at, &v, sizeof v);
-  }
-  base::Bytes take() {
-    flush();
-    return std::move(bytes_);
-  }
+  void patch_u32(size_t at, uint32_t v) { out_.patch_u32(at, v); }
 
  private:
-  void count(size_t n) { number(static_cast<uint32_t>(n)); }
-  template <class T>
-  [[gnu::always_inline]] void number(T v) {
-    if (sizeof v > sizeof gathered_ - used_) flush();
-    std::memcpy(gathered_ + used_, &v, sizeof v);
-    used_ += sizeof v;
-  }
-  void flush() {
-    bytes_.insert(bytes_.end(), gathered_, gathered_ + used_);
-    used_ = 0;
-  }
-
-  base::Bytes bytes_;
-  uint8_t gathered_[4096];
-  size_t used_ = 0;     // of these
   size_t section_ = 0;  // where it began
 };
 
-class ImageReader {
+class ImageReader : public base::ReadArchiveOn<base::ByteReader&> {
   template <class T>
   struct Stored {  // at any address
     uint8_t bytes[sizeof(T)];
@@ -148,33 +141,8 @@ class ImageReader {
 
  public:
   // `content`: all that `in` reads.
-  ImageReader(base::ByteReader& in, base::ByteSpan content) : in_(in), content_(content) {}
-  void operator()(bool& v) { v = in_.boolean(); }
-  void operator()(uint8_t& v) { v = in_.u8(); }
-  void operator()(uint16_t& v) { v = in_.u16(); }
-  void operator()(uint32_t& v) { v = in_.u32(); }
-  void operator()(uint64_t& v) { v = in_.u64(); }
-  void operator()(int64_t& v) { v = in_.i64(); }
-  void operator()(std::string& v) {
-    const base::ByteSpan bytes = in_.blob();
-    if (!bytes.empty()) v.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  }
-  void operator()(base::Bytes& v) {
-    const base::ByteSpan bytes = in_.blob();
-    v.assign(bytes.begin(), bytes.end());
-  }
-  void operator()(base::Digest& v) {
-    const base::ByteSpan bytes = in_.raw(v.size());
-    std::copy(bytes.begin(), bytes.end(), v.begin());
-  }
-  template <class Tag>
-  void operator()(base::Id<Tag>& v) {
-    v = base::Id<Tag>(in_.u32());
-  }
-  template <class E>
-  void enumerator(E& v, uint32_t limit) {
-    v = in_.enumerator<E>(limit);
-  }
+  ImageReader(base::ByteReader& in, base::ByteSpan content)
+      : ReadArchiveOn(in), content_(content) {}
   template <class L, class U>
   void enumerators(L& lower, uint32_t lower_limit, U& upper, uint32_t upper_limit) {
     const uint8_t both = in_.u8();
@@ -185,7 +153,7 @@ class ImageReader {
   template <class E>
   void last_enumerator(E& v, uint32_t limit) {
     if (in_.left() == 0) return;
-    v = in_.enumerator<E>(limit);
+    enumerator(v, limit);
     if (v == E{}) in_.fail();  // one image has one stored form
   }
   template <class T, class Each>
@@ -200,6 +168,7 @@ class ImageReader {
     last_list(all, min_size, each);
     v = std::move(all);
   }
+  // An image has most records of all that is read: room for them is made at once.
   template <class T, class Each>
   void list(std::vector<T>& v, size_t min_size, Each each) {
     v.resize(in_.count(min_size));
@@ -250,7 +219,6 @@ class ImageReader {
   }
 
  private:
-  base::ByteReader& in_;
   base::ByteSpan content_;
 };
 

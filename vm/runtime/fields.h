@@ -45,8 +45,8 @@ enum class Texts : uint8_t { kVisible, kAsSent };
 class FieldReader : public base::ReadArchive {
  public:
   explicit FieldReader(base::ByteSpan bytes, Texts texts = Texts::kVisible)
-      : ReadArchive(bytes), texts_(texts) {}
-  using ReadArchive::operator();
+      : ReadArchiveOn(bytes), texts_(texts) {}
+  using ReadArchiveOn::operator();
   void operator()(std::string& v) {
     const base::ByteSpan bytes = in_.blob();
     if (bytes.size() > kMaxNameBytes) in_.fail();
