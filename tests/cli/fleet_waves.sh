@@ -112,6 +112,12 @@ said 'R0406.*a roll-out is at work on it'
 kill -9 $tool
 wait $tool 2>/dev/null || true
 on_trial two || fail "it is on trial without a tool"
+expect 0 stvm status --dir two
+said '^  watched     by plan [0-9a-f]{8} wave 1 by [a-z]+; taken back in (2 h|1[0-9]+ min) unless accepted$'
+expect 0 stvm status --dir two --format json
+json 'd["watched_by"].startswith("plan ") and 0 < d["watch_left_ns"] < 3 * 3600 * 10**9'
+expect 0 stvm status --dir one --format json
+json '"watched_by" not in d'
 expect 7 roll --yes
 said 'R0302.*is not over'
 sed -i 's/soak = ..1h/soak = \\"1s/' x.fleet.plan

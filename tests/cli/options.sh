@@ -29,7 +29,7 @@ for tool in stc stvm; do
   said 'R0504: version: too many arguments: good.img'
 done
 expect 0 stvm version
-said '^protocol +13$'
+said '^protocol +14$'
 
 # R-01 The commit is looked up in every build, and the file is written only when it is another one.
 if command -v git >git.path; then

@@ -202,6 +202,10 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.aborted = aborted_;
   report.edits = trials_.size();
   report.last_edit_boots = last_edit_boots();
+  if (guard_.is_on()) {
+    report.watched_by = guard_.note();
+    report.watch_left_ns = guard_.left_ns();
+  }
   if (previous() != nullptr) report.previous = previous()->digest();
   report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});

@@ -80,6 +80,11 @@ void print_versions(const vm::StatusReport& report) {
   if (on_trial(report)) {
     std::printf("  on trial    %llu edit(s) (stvm edits)\n",
                 static_cast<unsigned long long>(report.edits));
+    if (!report.watched_by.empty()) {
+      std::printf("  watched     by %s; taken back in %s unless accepted\n",
+                  report.watched_by.c_str(),
+                  age_text(std::max<int64_t>(report.watch_left_ns, 0)).c_str());
+    }
     std::printf("  power loss  %s\n",
                 report.last_edit_boots
                     ? "they go on, with their ways back ([change] boots = \"last-edit\")"
@@ -212,6 +217,9 @@ void print_status_json(const vm::StatusReport& report) {
   json.field("aborted", report.aborted).field("trial", on_trial(report));
   json.field("edits", report.edits).field("last_edit_boots", report.last_edit_boots);
   if (on_trial(report)) json.field("undo_brings", base::to_hex(report.previous));
+  if (!report.watched_by.empty()) {
+    json.field("watched_by", report.watched_by).field("watch_left_ns", report.watch_left_ns);
+  }
   json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
   if (report.trial_lost != base::Digest{}) {
     json.field("trial_lost", base::to_hex(report.trial_lost));

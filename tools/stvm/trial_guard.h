@@ -37,6 +37,7 @@ class TrialGuard : public vm::BoundaryWatch {
   // Why it has failed, with values and cycle.
   std::string why() const;
   const std::string& note() const { return order_.note; }
+  int64_t left_ns() const { return order_.deadline_ns - (clock_.now_ns() - began_ns_); }
   bool stops_safe() const { return order_.stop_safe; }
   // After a failure that nothing can be done about.
   void give_up() { state_.store(State::kOff, std::memory_order_release); }
@@ -44,7 +45,7 @@ class TrialGuard : public vm::BoundaryWatch {
   std::function<void()> failed;
 
   // --- at a boundary ---
-  // Behind the switch: the variables have their first values of the version on trial.
+  // After the switch: the variables have their first values of the version on trial.
   void begin();
   // The trial is over: accepted or taken back.
   void end();

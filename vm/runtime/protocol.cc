@@ -217,6 +217,8 @@ constexpr auto status_fields = [](auto& a, auto& report) {
   a.rows(report.tasks, 134, task_fields);
   a.rows(report.traps, 28, trap_fields);
   a.rows(report.devices, 40, device_fields);
+  a.added(report.watched_by);
+  a.added(report.watch_left_ns);
 };
 
 constexpr auto values_fields = [](auto& a, auto& values) {

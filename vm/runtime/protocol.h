@@ -22,7 +22,7 @@
 namespace vm {
 
 // Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 13;
+inline constexpr uint8_t kProtocolVersion = 14;
 // Those that are understood, up to any later one. Recordings hold requests.
 inline constexpr uint8_t kOldestRequest = 12;
 inline constexpr uint8_t kOldestAnswer = 13;
@@ -124,6 +124,8 @@ struct StatusReport {
   std::vector<TaskStatus> tasks;
   std::vector<TrapRow> traps;
   std::vector<DeviceStatus> devices;
+  std::string watched_by;     // whose roll-out watches the edit on trial; "": none does
+  int64_t watch_left_ns = 0;  // until it is taken back, if nobody accepts it
 };
 inline constexpr size_t kShownInterpreted = 8;
 
