@@ -141,6 +141,17 @@ said '^1 +two +undone'
 said ': aborted'
 expect 7 stvm fleet watch x.fleet.plan
 
+# With a window the tool waits, and the controller looks at what was before.
+rm -f x.fleet.plan
+waves fleet.toml 1s 'window = "700ms"'
+began=$(date +%s%N)
+expect 0 roll --yes
+said '^2 +three +accepted'
+[ $(($(date +%s%N) - began)) -gt 1400000000 ] || fail "it did not wait for two windows"
+expect 0 stc fleet five.st four.st -o back.fleet
+rm -f back.fleet.plan
+expect 0 stvm fleet roll back.fleet --fleet fleet.toml --allow-overrun --yes
+
 # Nobody accepts, and no tool is there: the controller goes back by its deadline.
 rm -f x.fleet.plan
 waves fleet.toml 1h 'accept = "at-end"'

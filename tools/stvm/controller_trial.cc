@@ -80,9 +80,15 @@ base::Result<base::Bytes> ControllerService::guard(const vm::Request& request) {
                        "an edit is on trial here; accept or undo it before the roll-out"};
   }
   const bool only_checked = rehearses() || only_looked_at_;
-  base::Status taken = only_checked
-                           ? TrialGuard::check(*order, change.next()->image())
-                           : guard_.stage(std::move(*order), change.next()->image());
+  const ir::Image& next = change.next()->image();
+  if (only_checked) {
+    base::Status sound = TrialGuard::check(*order, next);
+    return sound.ok() ? base::Result<base::Bytes>(base::Bytes{}) : sound.error();
+  }
+  // The control thread may look at what an order before this one asked for: first it stops.
+  base::Status taken = look_at_boundary([&] { guard_.forget(); });
+  if (taken.ok()) taken = guard_.stage(std::move(*order), controller_.image(), next);
+  if (taken.ok()) taken = look_at_boundary([&] { guard_.collect(); });
   if (taken.ok()) return base::Bytes{};
   return only_checked ? taken.error() : refused(taken.error());
 }

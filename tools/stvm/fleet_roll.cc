@@ -35,6 +35,7 @@ SwitchOptions FleetRoll::how(size_t member) const {
   order.note = note(wave);
   order.deadline_ns = plan_.settings.waves[wave].deadline_ms * 1'000'000;
   how.guard = encode(order);
+  how.window_ms = order.window_ns / 1'000'000;
   return how;
 }
 

@@ -19,6 +19,7 @@ struct TimeUnit {
 constexpr TimeUnit kTimeUnits[] = {
     {"ms", 1}, {"s", 1000}, {"min", 60'000}, {"h", 3'600'000}, {"d", 86'400'000}};
 constexpr int64_t kLongestMs = 366LL * 86'400'000;
+constexpr int64_t kLongestWindowNs = 3'600'000'000'000;
 constexpr int64_t kMostParallel = 256;
 constexpr int64_t kMostControllers = 100'000;
 constexpr int64_t kMsOfAPlan = 600'000;  // for the way between two waves
@@ -128,6 +129,9 @@ class RollReader {
       guard.grace_ns = time(value) * 1'000'000;
     } else if (name == "hold") {
       guard.hold_ns = time(value) * 1'000'000;
+    } else if (name == "window") {
+      guard.window_ns = time(value) * 1'000'000;
+      if (guard.window_ns > kLongestWindowNs) fail(value.place, "a window is at most 1h long");
     } else if (name == "missed") {
       guard.most_missed = static_cast<uint64_t>(number(value, 0, INT64_MAX));
     } else if (name == "load") {
@@ -146,9 +150,9 @@ class RollReader {
       guard.stop_safe = word(value, "keep", "stop-safe");
     } else {
       fail_at_key(value, base::joined({"`", name,
-                                       "` is not known; [roll] has health, grace, hold, missed, "
-                                       "load, traps, devices, alarms, lost_after, on_failure, "
-                                       "not_undone, and for all waves soak, deadline, "
+                                       "` is not known; [roll] has health, grace, hold, window, "
+                                       "missed, load, traps, devices, alarms, lost_after, "
+                                       "on_failure, not_undone, and for all waves soak, deadline, "
                                        "max_failed, parallel and accept"}));
     }
   }

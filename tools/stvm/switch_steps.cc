@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <thread>
 
 #include "ir/bytecode/no_program.h"
 #include "tools/common/change_settings.h"
@@ -64,6 +65,19 @@ base::Status guard_trial(const SwitchOptions& options, ControllerClient& client)
   request.data = options.guard;
   base::Result<base::Bytes> answer = client.call(std::move(request));
   return answer.ok() ? base::Status(base::Ok{}) : base::Status(answer.error());
+}
+
+// Meanwhile the controller sees that somebody is there.
+base::Status wait_for_window(const SwitchOptions& options, ControllerClient& client) {
+  constexpr auto kBetween = std::chrono::milliseconds(500);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(options.window_ms);
+  for (;;) {
+    const auto left = end - std::chrono::steady_clock::now();
+    if (left <= left.zero()) return base::Ok{};
+    std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(left, kBetween));
+    base::Result<vm::StatusReport> status = client.status();
+    if (!status.ok()) return status.error();
+  }
 }
 
 // Variables that the staged version would no longer exchange with other resources.
@@ -166,8 +180,8 @@ base::Status check_no_trial(const vm::StatusReport& status) {
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package) {
-  base::Status staged = client.stage(package, options.stage_flags, options.unless,
-                                            options.note, options.taken_out);
+  base::Status staged =
+      client.stage(package, options.stage_flags, options.unless, options.note, options.taken_out);
   if (!staged.ok()) return staged.error();
   return bring_staged(options, client);
 }
@@ -197,6 +211,7 @@ base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClien
   base::Status go = may_switch(options, outcome.page);
   if (go.ok()) go = guard_trial(options, client);
   if (options.dry_run && go.ok()) go = rehearse(options, client);
+  if (!options.dry_run && go.ok()) go = wait_for_window(options, client);
   if (options.dry_run || !go.ok()) {
     base::Result<base::Bytes> cancelled = client.call({.command = vm::Command::kCancel});
     if (!cancelled.ok()) return cancelled.error();

@@ -21,6 +21,7 @@ struct SwitchOptions {
   std::string unless;         // a BOOL; while it is TRUE nothing is switched
   std::string note;           // what the journal says of it (E-33)
   base::Bytes guard = {};     // conditions of its trial, as vm::Command::kGuard has them; none
+  int64_t window_ms = 0;      // so long the controller looks at values before the switch
   std::string taken_out;      // the edit whose work it takes back
   bool dry_run = false;
   bool all = false;  // a line for each variable

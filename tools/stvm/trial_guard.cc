@@ -1,6 +1,7 @@
 #include "tools/stvm/trial_guard.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/joined.h"
 #include "base/visible_text.h"
@@ -36,7 +37,7 @@ base::Status TrialGuard::check(const GuardOrder& order, const ir::Image& next) {
   return variables.ok() ? base::Status(base::Ok{}) : base::Status(variables.error());
 }
 
-base::Status TrialGuard::stage(GuardOrder order, const ir::Image& next) {
+base::Status TrialGuard::stage(GuardOrder order, const ir::Image& running, const ir::Image& next) {
   if (is_on()) return base::Error{base::Refusal::kChangePending, "a trial is watched already"};
   auto variables = variables_of(order, next);
   if (!variables.ok()) return variables.error();
@@ -44,6 +45,13 @@ base::Status TrialGuard::stage(GuardOrder order, const ir::Image& next) {
   baseline_.resize(variables_.size());
   now_.resize(variables_.size());
   false_since_.assign(order.conditions.size(), -1);
+  means_.clear();
+  for (size_t i = 0; order.window_ns != 0 && i < variables_.size(); ++i) {
+    const auto before = condition_variable(running, order.names[i]);
+    const ConditionType type = condition_type(variables_[i]);
+    if (!before.ok() || condition_type(*before) != type || type == ConditionType::kBool) continue;
+    means_.push_back({i, *before});
+  }
   order_ = std::move(order);
   online_before_ = order_.devices ? devices_online() : 0;
   trap_.reset();
@@ -74,9 +82,38 @@ void TrialGuard::begin() {
   began_ns_ = clock_.now_ns();
   traps_before_ = controller_.trap_count();
   missed_before_ = controller_.missed_releases();
-  (void)read(baseline_);
+  take_baseline();
   state_.store(State::kOn, std::memory_order_release);
   controller_.watch(this);
+}
+
+void TrialGuard::collect() {
+  if (is_staged() && order_.window_ns != 0) controller_.watch(this);
+}
+
+void TrialGuard::collect_means() {
+  for (Mean& mean : means_) {
+    ConditionValue now;
+    if (!read_variable(mean.before, controller_.memory().data(), now)) continue;
+    const double value =
+        now.type == ConditionType::kReal ? now.real : static_cast<double>(now.integer);
+    if (!std::isfinite(value)) continue;
+    mean.value += (value - mean.value) / static_cast<double>(++mean.count);
+  }
+}
+
+// The first values of the version on trial, or the means of what they were before.
+void TrialGuard::take_baseline() {
+  (void)read(baseline_);
+  for (const Mean& mean : means_) {
+    ConditionValue& value = baseline_[mean.variable];
+    if (mean.count == 0) continue;
+    if (value.type == ConditionType::kReal) {
+      value.real = mean.value;
+    } else if (std::abs(mean.value) < 0x1p62) {
+      value.integer = std::llround(mean.value);
+    }
+  }
 }
 
 void TrialGuard::end() {
@@ -112,6 +149,7 @@ void TrialGuard::look_at_conditions(int64_t now) {
 }
 
 void TrialGuard::at_boundary() {
+  if (is_staged()) return collect_means();
   if (state() != State::kOn) return;
   const int64_t now = clock_.now_ns();
   const bool traps =

@@ -24,8 +24,8 @@ class TrialGuard : public vm::BoundaryWatch {
   // --- the channel's thread ---
   // Is every condition a BOOL over variables of `next`, and none too long?
   static base::Status check(const GuardOrder& order, const ir::Image& next);
-  // Checked; the next switch to `next` begins it.
-  base::Status stage(GuardOrder order, const ir::Image& next);
+  // Checked; the next switch from `running` to `next` begins it. Not while collect() is at work.
+  base::Status stage(GuardOrder order, const ir::Image& running, const ir::Image& next);
   void forget();  // what is staged
   bool is_staged() const { return state() == State::kStaged; }
   // An edit is on trial under it. While it is, nothing is made on top of that.
@@ -45,6 +45,8 @@ class TrialGuard : public vm::BoundaryWatch {
   std::function<void()> failed;
 
   // --- at a boundary ---
+  // From here to the switch, the values for the baseline are looked at.
+  void collect();
   // After the switch: the variables have their first values of the version on trial.
   void begin();
   // The trial is over: accepted or taken back.
@@ -60,6 +62,8 @@ class TrialGuard : public vm::BoundaryWatch {
   // False: one of the values has no room in 64 bits.
   bool read(std::vector<ConditionValue>& values) const;
   void look_at_conditions(int64_t now);
+  void collect_means();
+  void take_baseline();
   std::string values_text(const Condition& condition) const;
   uint64_t devices_online() const;
 
@@ -69,6 +73,13 @@ class TrialGuard : public vm::BoundaryWatch {
   GuardOrder order_;
   std::vector<ConditionVariable> variables_;
   std::vector<ConditionValue> baseline_;
+  struct Mean {  // of a number that the running version has, too
+    size_t variable = 0;
+    ConditionVariable before;  // there
+    double value = 0;
+    uint64_t count = 0;  // of what was seen
+  };
+  std::vector<Mean> means_;
   std::vector<ConditionValue> now_;
   std::vector<int64_t> false_since_;  // of each condition; -1: it is TRUE
   std::atomic<int64_t> began_ns_{0};

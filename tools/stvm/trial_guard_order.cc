@@ -1,5 +1,7 @@
 #include "tools/stvm/trial_guard_order.h"
 
+#include <algorithm>
+
 #include "vm/runtime/fields.h"
 
 namespace stvm {
@@ -30,6 +32,7 @@ constexpr auto guard_fields = [](auto& a, auto& order) {
   a(order.most_load);
   a.texts(order.names);
   a.rows(order.conditions, 8, condition_fields);
+  a.added(order.window_ns);
 };
 
 }  // namespace
@@ -42,10 +45,12 @@ base::Result<GuardOrder> decode_guard_order(base::ByteSpan bytes) {
   GuardOrder order;
   guard_fields(reader, order);
   if (reader.failed()) return vm::not_understood("conditions of a trial");
-  if (!reader.rest().empty()) {
+  const base::ByteSpan more = reader.rest();
+  if (std::any_of(more.begin(), more.end(), [](uint8_t byte) { return byte != 0; })) {
     return vm::not_understood("the trial has conditions that only a newer controller knows");
   }
-  const bool timed = order.deadline_ns > 0 && order.grace_ns >= 0 && order.hold_ns >= 0;
+  const bool timed =
+      order.deadline_ns > 0 && order.grace_ns >= 0 && order.hold_ns >= 0 && order.window_ns >= 0;
   const bool bounded =
       order.names.size() <= kMostConditionNames && order.conditions.size() <= kMostConditions;
   if (timed && bounded) return order;

@@ -24,6 +24,9 @@ struct GuardOrder {
   uint64_t most_load = 0;             // percent of the periods of all tasks; 0: any
   std::vector<std::string> names;     // variables
   std::vector<Condition> conditions;
+  // baseline() is the mean over what is seen before the switch, from the order on; whoever sends it
+  // waits for so long. 0: it is the first value of the version on trial.
+  int64_t window_ns = 0;
 };
 
 base::Bytes encode(const GuardOrder& order);

@@ -51,7 +51,7 @@ TEST(RollSettings, X601_WavesTakeNamesNumbersOrAPart) {
 
 TEST(RollSettings, X601_X603_TheTrialHasItsConditions) {
   const auto all = settings(
-      "[roll]\nhealth = [\"Main.n > 1\", \"Main.ok\"]\ngrace = \"5s\"\nhold = \"200ms\"\n"
+      "[roll]\nhealth = [\"Main.n > 1\", \"Main.ok\"]\ngrace = \"5s\"\nhold = \"200ms\"\nwindow = \"30s\"\n"
       "missed = 3\nload = 80\ntraps = false\ndevices = true\nalarms = true\n"
       "lost_after = \"90s\"\non_failure = \"undo-all\"\nnot_undone = \"stop-safe\"\n"
       "deadline = \"1d\"\n[[wave]]\npercent = 100\n");
@@ -60,6 +60,7 @@ TEST(RollSettings, X601_X603_TheTrialHasItsConditions) {
   EXPECT_EQ(guard.conditions.size(), 2u);
   EXPECT_EQ(guard.grace_ns, 5'000'000'000);
   EXPECT_EQ(guard.hold_ns, 200'000'000);
+  EXPECT_EQ(guard.window_ns, 30'000'000'000);
   EXPECT_EQ(guard.most_missed, 3u);
   EXPECT_EQ(guard.most_load, 80u);
   EXPECT_TRUE(!guard.traps && guard.devices && guard.alarms && guard.stop_safe && all->undo_all);

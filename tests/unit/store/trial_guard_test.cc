@@ -196,6 +196,61 @@ TEST(TrialGuard, X603_ConditionsThatFlapCountWhenTheyHoldOn) {
   }
 }
 
+// `errors` goes from 0 to 9 and over again; what it is at the switch says little.
+TEST(TrialGuard, X603_WithAWindowTheBaselineIsTheMeanBefore) {
+  const std::string body = "errors := DINT_TO_INT(n MOD 10); rate := DINT_TO_REAL(n MOD 4) * 0.5;";
+  for (const int64_t window_ns : {int64_t{0}, 40 * kMs}) {
+    for (int cycles = 40; cycles < 44; ++cycles) {
+      GuardRig rig(body);
+      GuardOrder order = order_of({"baseline(Main.errors) = 4 OR baseline(Main.errors) = 5",
+                                   "ABS(baseline(Main.rate) - 0.75) < 0.05", "Main.m >= 0"});
+      order.window_ns = window_ns;
+      ASSERT_TRUE(
+          rig.plc.stage(plc::build(edited_program(body), &rig.plc.controller().image())).ok());
+      ASSERT_TRUE(rig.guard(order).ok());
+      rig.plc.run(cycles);
+      vm::Request change{.command = vm::Command::kSwitch};
+      change.flags = vm::kAllowOverrun;
+      ASSERT_TRUE(rig.plc.ask(std::move(change)).ok());
+      EXPECT_EQ(rig.cycles_until_undone(3) == 0, window_ns != 0) << cycles;
+    }
+  }
+}
+
+// What only the new version has, or has as another type, begins with its first value.
+TEST(TrialGuard, X603_WithAWindowOtherVariablesHaveTheirFirstValue) {
+  GuardRig rig("errors := 7; ok := n > 0;");
+  std::string next = edited_program("errors := 7; ok := TRUE;");
+  next.replace(next.find("level : INT"), 11, "level : REAL");
+  GuardOrder order =
+      order_of({"baseline(Main.m) <= 1", "baseline(Main.level) = 77.0", "baseline(Main.ok)"});
+  order.window_ns = 5 * kMs;
+  ASSERT_TRUE(rig.plc.stage(plc::build(next, &rig.plc.controller().image())).ok());
+  ASSERT_TRUE(rig.guard(order).ok());
+  rig.plc.run(5);
+  vm::Request change{.command = vm::Command::kSwitch};
+  change.flags = vm::kAllowOverrun;
+  ASSERT_TRUE(rig.plc.ask(std::move(change)).ok());
+  EXPECT_EQ(rig.cycles_until_undone(3), 0) << rig.journal();
+}
+
+// An order that another one replaces is not looked at any more.
+TEST(TrialGuard, X603_AWindowThatIsGivenAnewBeginsAnew) {
+  const std::string body = "errors := DINT_TO_INT(n);";
+  GuardRig rig(body);
+  GuardOrder order = order_of({"baseline(Main.errors) > 20"});
+  order.window_ns = 5 * kMs;
+  ASSERT_TRUE(rig.plc.stage(plc::build(edited_program(body), &rig.plc.controller().image())).ok());
+  ASSERT_TRUE(rig.guard(order).ok());
+  rig.plc.run(30);
+  ASSERT_TRUE(rig.guard(order).ok());
+  rig.plc.run(3);
+  vm::Request change{.command = vm::Command::kSwitch};
+  change.flags = vm::kAllowOverrun;
+  ASSERT_TRUE(rig.plc.ask(std::move(change)).ok());
+  EXPECT_EQ(rig.cycles_until_undone(3), 0) << rig.journal();
+}
+
 TEST(TrialGuard, X603_NothingCountsInTheGraceTime) {
   GuardRig rig;
   GuardOrder order = order_of({"Main.m > 30"});
@@ -279,8 +334,10 @@ TEST(TrialGuard, X603_TheControllerChecksWhatItIsSent) {
   vm::Request longer{.command = vm::Command::kGuard};
   longer.data = encode(order_of({"Main.ok"}));
   longer.data.push_back(0);
+  EXPECT_TRUE(rig.plc.ask(longer).ok()) << "a newer tool asks for nothing more";
+  longer.data.push_back(1);
   EXPECT_FALSE(rig.plc.ask(longer).ok()) << "what a newer tool relies on";
-  longer.data.resize(longer.data.size() - 2);
+  longer.data.resize(longer.data.size() - 3);
   EXPECT_FALSE(rig.plc.ask(longer).ok());
 }
 
@@ -290,8 +347,10 @@ TEST(TrialGuard, X603_DamagedOrdersAreRefusedOrHarmless) {
   const base::Bytes whole =
       encode(order_of({"Main.errors <= baseline(Main.errors) + 2 AND NOT (Main.rate > 0.5)",
                        "MIN(Main.n, 3) MOD 2 = ABS(-1)"}));
-  EXPECT_EQ(base::short_hex(base::sha256(whole)), "d0d6bacc8e34")
+  const size_t first_form = whole.size() - sizeof(int64_t);  // without a window
+  EXPECT_EQ(base::short_hex(base::sha256(base::ByteSpan(whole).first(first_form))), "d0d6bacc8e34")
       << "what newer tools send grows at its end";
+  EXPECT_TRUE(decode_guard_order(base::ByteSpan(whole).first(first_form)).ok());
   size_t computed = 0;
   const std::vector<ConditionValue> values(kMostConditionNames);
   const auto look = [&](const base::Bytes& bytes) {
@@ -303,7 +362,8 @@ TEST(TrialGuard, X603_DamagedOrdersAreRefusedOrHarmless) {
     }
   };
   for (size_t i = 0; i < whole.size(); ++i) {
-    EXPECT_FALSE(decode_guard_order(base::ByteSpan(whole).first(i)).ok()) << i;
+    const base::ByteSpan part(whole.data(), i);
+    EXPECT_EQ(decode_guard_order(part).ok(), i == first_form) << i;
     for (int bit = 0; bit < 8; ++bit) {
       base::Bytes flipped = whole;
       flipped[i] = static_cast<uint8_t>(flipped[i] ^ (1u << bit));
