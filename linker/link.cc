@@ -10,6 +10,7 @@
 #include "linker/areas.h"
 #include "linker/call_graph.h"
 #include "linker/data.h"
+#include "linker/given_addresses.h"
 #include "linker/held.h"
 #include "linker/instances.h"
 #include "linker/relink.h"
@@ -336,12 +337,15 @@ class Linker {
     return 0;
   }
 
-  // Addresses that VAR_CONFIG gives to variables of single instances.
+  // Addresses that VAR_CONFIG gives to variables of single instances, and those that nobody gives.
   base::Status bind_located() {
     for (const ir::LocatedPath& located : program_.located) {
       const base::Result<ir::Symbol> symbol = ir::find_symbol(image_, located.path);
       if (!symbol.ok()) return symbol.error();
       bind_address(image_, located.address, symbol->data, symbol->type);
+    }
+    if (base::Status given = give_addresses(image_, nodes_, options_.base); !given.ok()) {
+      return given;
     }
     if (base::Status sized = size_process_image(image_); !sized.ok()) return sized;
     if (base::Status placed = place_devices(image_, options_.devices); !placed.ok()) return placed;

@@ -10,6 +10,7 @@
 #include "ir/program/text.h"
 #include "tools/common/files.h"
 #include "tools/common/source_command.h"
+#include "tools/stc/addresses_text.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/edit_version.h"
 #include "tools/stc/image_text.h"
@@ -34,6 +35,7 @@ constexpr tools::OptionRow kDumpOptions[] = {
     {"--image", nullptr, "tables of the image (default for images)"},
     {"--package", "BASE",
      "PATH is a change package that `stc package --base BASE` made: its update records"},
+    {"--addresses", nullptr, "what stands at which address of %I, %Q and %M"},
     {"--symbols", nullptr, "every variable with type and offset"},
     {"--parts", nullptr, "what the image is made of, each part with its identity"},
     {"--sources", nullptr, "sources that travel with the image; `stc source` writes them"},
@@ -117,6 +119,7 @@ base::Result<std::string> dump_image(const tools::Options& options) {
     return out;
   }
   if (options.has("--native")) return vm::native::functions_text(version->image);
+  if (options.has("--addresses")) return addresses_text(version->image);
   if (options.has("--symbols")) return symbols_text(version->image);
   if (options.has("--sources")) return sources_text(*version);
   return image_text(version->image, ir::digest(version->bytes)) + sources_line(version->bytes);
@@ -163,7 +166,8 @@ int run_dump(const tools::Options& options) {
   }
   bool wants_image = image_given || options.has("--code") || options.has("--native") ||
                      options.has("--image") || options.has("--symbols") ||
-                     options.has("--sources") || options.has("--parts");
+                     options.has("--sources") || options.has("--parts") ||
+                     options.has("--addresses");
   base::Result<std::string> out = wants_image ? dump_image(options) : dump_sources(options);
   if (!out.ok()) return tools::refuse("stc", out.error());
   std::fputs(out->c_str(), stdout);

@@ -300,9 +300,12 @@ bool InstancePaths::holds_open(ir::TypeId type) {
   return holds_open_[type] = holds;
 }
 
-// Every AT %I*, %Q* has to get its address, in each instance. A VAR_CONFIG with a mistake gives
-// none, and what it meant is not to be known.
+// With `iec`, every AT %I*, %Q* has to get its address, in each instance; so it has where several
+// RESOURCEs, which are linked one by one, share the process image. Else the linker gives one. A
+// VAR_CONFIG with a mistake gives none, and what it meant is not to be known.
 void InstancePaths::check_open_addresses() {
+  const bool alone = sema_.tree.configs.empty() || sema_.tree.configs[0].resources.size() < 2;
+  if (sema_.options.dialect != Dialect::kIec && alone) return;
   if (sema_.report.has_errors()) return;
   Known known;
   for (const ir::LocatedPath& located : sema_.program.located) {
