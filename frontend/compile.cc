@@ -109,6 +109,7 @@ void lower_body(Sema& sema, uint32_t pou) {
 void check_uses(Sema& sema) {
   Objects(sema).check_recursion();
   CommonUses(sema).check_output_tasks();
+  CommonUses(sema).check_call_instances();
   report_unused(Phase(sema));
 }
 
@@ -118,6 +119,7 @@ void check_whole(Sema& sema) {
   Objects(sema).check_recursion();
   sema.program.overrides = ir::find_overrides(sema.program);
   CommonUses(sema).check_output_tasks();
+  CommonUses(sema).check_call_instances();
   SharedAddresses(sema).check();
   report_unused(Phase(sema));
 }

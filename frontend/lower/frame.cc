@@ -1,6 +1,7 @@
 // Variables of the frame, and temporaries that are members: they begin anew at each call.
 #include "frontend/lower/frame.h"
 #include "frontend/lower/assignments.h"
+#include "frontend/lower/pool_code.h"
 #include "frontend/lower/start_code.h"
 
 namespace frontend {
@@ -13,12 +14,23 @@ void Frame::initialise_locals() {
         variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
     if (!written_by_caller && variable.type.valid()) initialise(local_place(i), variable);
   }
+  for (VarId id : info_.call_instances) make_instance(id);
   if (!info_.shares_temporaries) return;
   for (VarId id : info_.variables) {
     const Variable& variable = resolve(id);
-    bool temporary = variable.section == VarSection::kTemp && variable.type.valid();
+    bool temporary =
+        variable.section == VarSection::kTemp && variable.type.valid() && !variable.each_call;
     if (temporary) initialise(member_variable_place(variable), variable);
   }
+}
+
+// FB_Exit does not run for it.
+void Frame::make_instance(VarId id) {
+  const Variable& variable = resolve(id);
+  if (!variable.type.valid()) return;
+  set_line(variable.name.span);
+  ask<PoolCode>().reset(variable_place(id), variable.type, variable.init);
+  ask<StartCode>().begin(id);
 }
 
 void Frame::initialise(const ir::Place& where, const Variable& variable) {

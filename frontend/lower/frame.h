@@ -16,6 +16,7 @@ class Frame : public BodyPhase {
   void connect_outputs();
 
  private:
+  void make_instance(VarId id);
   void initialise(const ir::Place& where, const Variable& variable);
   void connect_input(const Target& input, const Arg& arg);
   void connect_output(const Variable& output, const Arg& arg);

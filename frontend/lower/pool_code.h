@@ -14,6 +14,8 @@ class PoolCode : public BodyPhase {
   ir::ValueId make(const Expr& call);
   // The element that `argument` points to is free again, and the pointer NULL.
   void destroy(const Expr& call);
+  // All variables have their initial values, those of instances too.
+  void reset(const ir::Place& at, ir::TypeId type, ir::ConstId init);
   void reset_method();  // all variables of the instance have their initial values
   void leave_method();  // FB_Exit of the instances in it
   // In __START: what is in use is visited there too.
@@ -28,7 +30,6 @@ class PoolCode : public BodyPhase {
   ir::ValueId handle(const Pool& pool, const ir::Place& element);
   void free(const Pool& pool, const ir::Place& element, const ir::Place& state);
   void call_made(uint32_t method, const ir::Place& at);
-  void reset(const ir::Place& at, ir::TypeId type, ir::ConstId init);
   void reset_elements(const ir::Place& at, ir::TypeId type, ir::ConstId init);
   void leave(const ir::Place& at, ir::TypeId type);
 

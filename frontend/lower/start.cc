@@ -51,6 +51,7 @@ void StartCode::references(const std::vector<VarId>& variables) {
   for (VarId id : variables) {
     const Variable& variable = resolve(id);
     if (variable.section == VarSection::kInOut || !variable.type.valid()) continue;
+    if (variable.each_call) continue;
     if (!sema_.start_values.inside(variable.type, variable.init)) continue;
     span_ = variable.name.span;
     bind_references(variable_place(id), variable.type, variable.init);
@@ -106,7 +107,17 @@ void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
   });
 }
 
+void StartCode::begin(VarId id) {
+  const Variable& variable = resolve(id);
+  bind_references(variable_place(id), variable.type, variable.init);
+  visit(id);
+}
+
 void StartCode::variable(VarId id) {
+  if (!resolve(id).each_call) visit(id);
+}
+
+void StartCode::visit(VarId id) {
   const Variable& variable = resolve(id);
   if (variable.section == VarSection::kInOut || !ask<Objects>().constructs(variable.type)) return;
   const Spec* spec =

@@ -17,6 +17,8 @@ class StartCode : public BodyPhase {
   using BodyPhase::BodyPhase;
 
   void run();
+  // A variable that is made anew at each call, when it has its initial values.
+  void begin(VarId id);
   // Gives the references inside of `at` their values, where `init` says that they are unbound.
   void bind_references(const ir::Place& at, ir::TypeId type, ir::ConstId init);
 
@@ -35,6 +37,7 @@ class StartCode : public BodyPhase {
   void references(const std::vector<VarId>& variables);
   void bind_reference(const ir::Place& at, uint64_t unbound);
   void variable(VarId id);
+  void visit(VarId id);
   void content(const ir::Place& at, ir::TypeId type, const Spec* spec);
   void elements(const ir::Place& at, ir::TypeId type, const Spec* spec);
   using PerElement = std::function<void(const ir::Place&)>;

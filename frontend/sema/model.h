@@ -51,6 +51,7 @@ struct Variable {
   bool hidden = false;        // not of the source: see hidden_variables.cc
   bool stamp = false;         // of start code: ir::Section::kStamp
   bool by_reference = false;  // in-out of a function block: a REFERENCE TO bound at each call
+  bool each_call = false;     // an instance that each call makes anew (call_instances.cc)
   bool runtime_init = false;  // the initialiser runs at each call
   Progress progress = Progress::kNew;
   Storage storage = Storage::kMember;
@@ -268,9 +269,10 @@ struct PouInfo {
   NameMap<MemberCode> code;         // its own methods, actions and properties
   std::vector<uint32_t> overrides;  // of a method: what a virtual call of it may run instead
   NameMap<VarId> names;
-  std::vector<VarId> variables;  // in declaration order
-  std::vector<VarId> locals;     // by local number
-  std::vector<VarId> members;    // its own, in order: member `inherited` is the first
+  std::vector<VarId> variables;       // in declaration order
+  std::vector<VarId> locals;          // by local number
+  std::vector<VarId> members;         // its own, in order: member `inherited` is the first
+  std::vector<VarId> call_instances;  // the variables with `each_call`
   VarId result;
   // Parameters of open types (ANY_NUM, ARRAY[*]): no code of its own, only instances have.
   bool open = false;

@@ -36,6 +36,8 @@ class CommonUses : public Phase {
 
   // Each byte of %Q has one writer among the tasks (E5003).
   void check_output_tasks();
+  // Instances that each call makes anew: no two calls meet (E2016; declarations/call_instances.cc).
+  void check_call_instances();
   // The uses of the resource that is compiled; nothing where there is only one. Marks the globals
   // that are exchanged (ir::Program::shared), and leaves overrides out that only others can reach.
   ResourceUses of_resource();
@@ -43,6 +45,10 @@ class CommonUses : public Phase {
   bool is_outer(VarId global) const;
 
  private:
+  void check_call_instances(const std::vector<ir::TypeId>& starts, uint32_t task,
+                            std::map<uint32_t, uint32_t>& task_of);
+  bool calls_itself(uint32_t pou) const;
+  void report_call_instance(const PouInfo& info, const std::string& why, const char* help) const;
   // The bodies of these types, and everything that they can reach through calls.
   std::vector<uint32_t> reached_from(const std::vector<ir::TypeId>& starts) const;
   std::vector<bool> other_code() const;

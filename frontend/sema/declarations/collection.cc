@@ -316,6 +316,10 @@ void Collection::collect_variables(uint32_t pou, const VarBlock& block) {
         add_instance_variable(variable, info);
         continue;
       }
+      if (is_call_instance(variable, info)) {
+        add_call_instance(variable, info);
+        continue;
+      }
       if (const VarId shared = shared_by_original(info, variable); shared.valid()) {
         info.names.emplace(name.text, shared);
         continue;
@@ -360,7 +364,8 @@ void Collection::number_variables(PouInfo& info) {
     if (sema_.declared.variables[id.index].storage == Storage::kGlobal)
       continue;  // it shares bytes
     if (function && is_parameter(section)) continue;
-    bool local = function || (section == VarSection::kTemp && !info.shares_temporaries);
+    const bool stays = sema_.declared.variables[id.index].each_call;
+    bool local = function || (section == VarSection::kTemp && !info.shares_temporaries && !stays);
     place(id, local ? Storage::kLocal : Storage::kMember, local ? info.locals : info.members);
   }
 }

@@ -41,7 +41,13 @@ class Collection : public Phase {
   // open_functions.cc
   bool is_open(const PouDecl& decl) const;
   VarId add_static(Variable variable, PouInfo& info);
-  void add_instance_variable(Variable variable, PouInfo& method);
+  VarId add_own_static(Variable variable, PouInfo& info);
+  VarId add_instance_variable(Variable variable, PouInfo& method);
+  // call_instances.cc
+  bool holds_block(SpecId spec, uint32_t depth);
+  const NameMap<SpecId>& block_names();
+  bool is_call_instance(const Variable& variable, const PouInfo& info);
+  void add_call_instance(Variable variable, PouInfo& info);
   void add_edge(VarId input, PouInfo& info);
 };
 

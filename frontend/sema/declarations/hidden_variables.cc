@@ -24,6 +24,10 @@ VarId Collection::add_static(Variable variable, PouInfo& info) {
       return shared;
     }
   }
+  return add_own_static(variable, info);
+}
+
+VarId Collection::add_own_static(Variable variable, PouInfo& info) {
   variable.storage = Storage::kGlobal;
   if (info.static_list.empty()) info.static_list = sema_.declared.keep_name(static_list_name(info));
   variable.list = info.static_list;
@@ -69,17 +73,18 @@ std::string Collection::static_list_name(const PouInfo& info) const {
 }
 
 // A variable of a method that is kept in the instance: a member that is named `Method#variable`.
-void Collection::add_instance_variable(Variable variable, PouInfo& method) {
+VarId Collection::add_instance_variable(Variable variable, PouInfo& method) {
   if (method.owner == kNoPou ||
       sema_.declared.pous[method.owner].decl->kind == PouKind::kInterface) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
           "VAR_INST stands in methods of function blocks, classes and programs");
-    return;
+    return {};
   }
   VarId id = add_variable(variable, method.names);
-  if (!id.valid()) return;
+  if (!id.valid()) return {};
   sema_.declared.variables[id.index].method = method.decl->name.text;
   sema_.declared.pous[method.owner].variables.push_back(id);
+  return id;
 }
 
 // After the globals that are there.

@@ -8,6 +8,7 @@
 #include "frontend/sema/declarations/shared_addresses.h"
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/objects/objects.h"
+#include "frontend/sema/objects/pools.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/tests/test_build.h"
 #include "frontend/sema/types/types.h"
@@ -130,6 +131,9 @@ void Interfaces::resolve_interface(uint32_t number) {
     Variable& variable = sema_.declared.variables[id.index];
     qualify_method(sema_, variable, info, names);
     members.push_back(member_of(variable, section_of(ir_section(variable))));
+  }
+  for (VarId id : info.call_instances) {
+    if (sema_.pools.declared) ask<Pools>().add_methods(sema_.declared.variables[id.index].type);
   }
   const bool block = info.decl->kind == PouKind::kFunctionBlock || info.as_block;
   if (sema_.for_tests() && block) ask<TestBuild>().add_mock_members(info, members);

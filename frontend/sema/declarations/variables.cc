@@ -139,7 +139,8 @@ void Variables::check_placement(const Variable& variable) {
   if (variable.section != VarSection::kInOut)
     ask<Objects>().check_instance(variable.type, variable.name.span);
   bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
-  bool anew = variable.storage == Storage::kLocal || variable.section == VarSection::kTemp;
+  bool anew = !variable.each_call &&
+              (variable.storage == Storage::kLocal || variable.section == VarSection::kTemp);
   if (holds_instance && anew && variable.section != VarSection::kInOut) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
           quoted(variable.name) + " is an instance of `" + type.name +

@@ -40,6 +40,10 @@ void Pools::declare() {
     const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kPoolAttribute);
     if (attribute != nullptr && !sema_.library.holds(decl.name.span)) add_type(decl, *attribute);
   }
+  for (size_t i = 0; i < sema_.declared.variables.size(); ++i) {
+    const Variable& variable = sema_.declared.variables[i];
+    if (variable.each_call) add_methods(variable.type);
+  }
 }
 
 uint32_t Pools::count_of(const Attribute& attribute) {
@@ -109,7 +113,6 @@ void Pools::add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, u
   add_methods(sema_.declared.pous[block].self);
 }
 
-// __RESET for every block that a pool's elements are or hold, __LEAVE where something leaves.
 void Pools::add_methods(ir::TypeId type) {
   const ir::TypeTable& types = sema_.program.types;
   if (!types.contains(type)) return;  // of a member whose type nobody knows

@@ -30,6 +30,9 @@ class Pools : public Phase {
   const Pool* of_new(ExprId type);
   // Where an object behind a pointer to `target` may come from.
   std::vector<const Pool*> of_target(ir::TypeId target) const;
+  // __RESET for every block that a variable of this type is or holds, __LEAVE where something
+  // leaves.
+  void add_methods(ir::TypeId type);
   // Is there anything in it that leaves by FB_Exit?
   bool leaves(ir::TypeId type);
   // An instance, or an array or structure with one?
@@ -40,7 +43,6 @@ class Pools : public Phase {
   void add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, uint32_t count);
   void add_type(const TypeDecl& decl, const Attribute& attribute);
   uint32_t add_box(const TypeDecl& decl, std::string_view name);
-  void add_methods(ir::TypeId type);
 };
 
 }  // namespace frontend

@@ -133,7 +133,7 @@ void Objects::add_start() {
   for (uint32_t i = 0; i < sema_.declared.variables.size(); ++i) {
     const Variable& variable = sema_.declared.variables[i];
     const bool global = variable.storage == Storage::kGlobal && !variable.hidden &&
-                        variable.section != VarSection::kExternal;
+                        variable.section != VarSection::kExternal && !variable.each_call;
     if (global && starts(variable.type, variable.init)) sema_.started.globals.push_back(VarId(i));
   }
   for (const ir::ProgramInstance& instance : sema_.program.instances) {
@@ -148,7 +148,11 @@ void Objects::add_start() {
     sema_.started.globals.push_back(ask<Variables>().program_variable(program.name, false));
   }
   const bool pools = !sema_.pools.all.empty();
-  if (sema_.declared.pous.size() == count && sema_.started.globals.empty() && !pools) return;
+  const bool at_calls =
+      std::any_of(sema_.declared.pous.begin(), sema_.declared.pous.end(),
+                  [](const PouInfo& info) { return !info.call_instances.empty(); });
+  const bool none = sema_.declared.pous.size() == count && sema_.started.globals.empty();
+  if (none && !pools && !at_calls) return;
   sema_.started.change_flag = add_hidden_global(
       kChangeFlag, sema_.program.types.elementary(ir::Kind::kDword), base::SourceSpan());
   if (sema_.started.globals.empty() && !pools) return;  // blocks that nobody has an instance of
