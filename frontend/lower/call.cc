@@ -176,7 +176,10 @@ ir::ValueId CallCode::emit_bound(const Expr& call, bool upper) {
   constexpr ir::Scalar kI64 = ir::Scalar::kI64;
   constexpr ir::Scalar kU64 = ir::Scalar::kU64;
   const ir::TypeId array = infer(tree_.args[call.list.first].value).type;
-  const std::vector<ir::Dimension> dims = types()[array].dims;
+  const OpenArray* open = sema_.declared.open_array(array);
+  std::vector<ir::Dimension> dims = types()[array].dims;
+  if (open != nullptr) dims.resize(open->dims);
+  const ExprId whole = tree_.args[call.list.first].value;
   const Typed given = natural(tree_.args[call.list.first + 1].value);
   const ir::ValueId number = code_.machine_convert(given.value, scalar(given.type), kI64);
   const ir::ValueId first = build_.constant(kI64, 1);
@@ -193,7 +196,9 @@ ir::ValueId CallCode::emit_bound(const Expr& call, bool upper) {
   ir::ValueId bound;
   for (size_t i = dims.size(); i-- > 0;) {
     const int64_t one = upper ? dims[i].high : dims[i].low;
-    const ir::ValueId value = build_.constant(ir::Scalar::kI32, static_cast<uint64_t>(one));
+    const ir::ValueId value = open != nullptr
+                                  ? ask<Places>().open_bound(whole, static_cast<uint32_t>(i), upper)
+                                  : build_.constant(ir::Scalar::kI32, static_cast<uint64_t>(one));
     if (!bound.valid()) {
       bound = value;
       continue;

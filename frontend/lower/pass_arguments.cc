@@ -65,6 +65,9 @@ bool Arguments::evaluate_in_out(Binding& binding) {
   ExprId id = binding.arg->value;
   const Note& note = infer(id);
   if (!note.type.valid() || !parameter.type.valid()) return false;
+  if (const OpenArray* open = sema_.declared.open_array(parameter.type)) {
+    return evaluate_open_array(binding, *open);
+  }
   if (parameter.by_reference) {
     binding.value = ask<References>().reference_value(id, parameter.type);
     return true;

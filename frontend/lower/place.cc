@@ -126,6 +126,7 @@ ir::Place Places::bit_word_place(ExprId structure, const Note& part) {
 
 ir::Place Places::index_place(const Expr& expr) {
   ir::TypeId array = infer(expr.operand).type;
+  if (const OpenArray* open = sema_.declared.open_array(array)) return open_element(expr, *open);
   ir::Place place = this->place(expr.operand);
   for (uint32_t i = 0; i < expr.list.count; ++i) {
     ExprId index = tree_.expr_lists[expr.list.first + i];

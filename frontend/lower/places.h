@@ -21,11 +21,13 @@ class Places : public BodyPhase {
   void note_outer_use(VarId global, bool written, base::SourceSpan span);
   bool is_character(ExprId expr);
   ir::ValueId character_position(const Expr& expr);
+  ir::ValueId open_bound(ExprId array, uint32_t dimension, bool upper);  // open_array.cc
 
  private:
   ir::Place member_place(const Expr& expr);
   ir::Place property_place(ExprId id);
   ir::Place index_place(const Expr& expr);
+  ir::Place open_element(const Expr& expr, const OpenArray& open);
   ir::Place constant_place(ExprId expr);
 };
 

@@ -45,6 +45,12 @@ ir::ValueId ValueCode::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId e
 
 // The place itself, also of what is constant: references need a home.
 ir::Place References::addressable_place(ExprId id) {
+  if (sema_.declared.open_array(infer(id).type) != nullptr) {
+    error(DiagnosticCode::kBadReference, tree_[id].span,
+          "an array with open bounds has no address as a whole",
+          "take that of its first element: ADR(a[LOWER_BOUND(a, 1)])");
+    return temporary_place(infer(id).type);
+  }
   const Expr& expr = tree_[id];
   ExprId whole = id;
   while (tree_[whole].kind == ExprKind::kMember || tree_[whole].kind == ExprKind::kIndex) {

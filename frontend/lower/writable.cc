@@ -64,6 +64,11 @@ bool WriteChecks::check_writable(ExprId id) {
           "assign the property as a whole");
     return false;
   }
+  if (sema_.declared.open_array(infer(id).type) != nullptr) {
+    error(DiagnosticCode::kNotAssignable, expr.span,
+          "an array with open bounds cannot be assigned as a whole", "assign its elements");
+    return false;
+  }
   switch (expr.kind) {
     case ExprKind::kName:
       return check_writable_name(expr);
@@ -94,9 +99,11 @@ bool WriteChecks::check_writable(ExprId id) {
     case ExprKind::kDeref:
     case ExprKind::kResult:
       return true;
-    case ExprKind::kIndex:
-      if (types().is_reference(infer(expr.operand).type)) return true;
+    case ExprKind::kIndex: {
+      const ir::TypeId whole = infer(expr.operand).type;
+      if (types().is_reference(whole) || sema_.declared.open_array(whole) != nullptr) return true;
       return check_writable(expr.operand);
+    }
     case ExprKind::kBit:
       return check_writable(expr.operand);
     default:

@@ -15,6 +15,13 @@
 
 namespace frontend {
 
+// What a type made by open_arrays.cc stands for.
+struct OpenArray {
+  ir::TypeId element;
+  uint32_t dims = 0;
+  friend bool operator==(const OpenArray&, const OpenArray&) = default;
+};
+
 struct Declarations {
   // The instance type's POU, or null.
   const PouInfo* pou_of(ir::TypeId instance) const;
@@ -28,6 +35,7 @@ struct Declarations {
   int32_t find_member(ir::TypeId structure, std::string_view name) const;
   // The number of a literal of an enumeration; -1: there is none.
   int32_t find_literal(ir::TypeId enumeration, std::string_view name) const;
+  const OpenArray* open_array(ir::TypeId type) const;  // null: it is no ARRAY[*]
   // Keeps a name that no source has.
   std::string_view keep_name(std::string name);
 
@@ -49,6 +57,7 @@ struct Declarations {
   std::unordered_map<ir::TypeId, uint32_t> pou_by_type;
   std::unordered_map<ir::TypeId, NameMap<StructureField>> structures;
   std::unordered_map<ir::TypeId, NameMap<uint32_t>> enumerations;  // the numbers of their literals
+  std::unordered_map<ir::TypeId, OpenArray> open_arrays;
   // Instances of functions with open parameters: by function and types.
   std::map<std::pair<uint32_t, std::vector<uint32_t>>, uint32_t> instances;
 

@@ -39,6 +39,11 @@ int32_t Declarations::find_literal(ir::TypeId enumeration, std::string_view name
   return found == table->second.end() ? -1 : static_cast<int32_t>(found->second);
 }
 
+const OpenArray* Declarations::open_array(ir::TypeId type) const {
+  const auto found = open_arrays.find(type);
+  return found == open_arrays.end() ? nullptr : &found->second;
+}
+
 std::string_view Declarations::keep_name(std::string name) {
   return made_names.emplace_back(std::move(name));
 }

@@ -16,13 +16,21 @@ static bool has_open_dimension(const Phase& phase, const Expr& expr) {
   const ir::TypeId type = phase.infer(array).type;
   const Note& dimension = phase.infer(number);
   const Traits traits = traits_of(sema.program.types, dimension.type);
+  if (sema.declared.open_array(type) != nullptr) return traits.integer || traits.bits;
   return type.valid() && sema.program.types[type].kind == ir::Kind::kArray &&
          dimension.known < Known::kByCall && (traits.integer || traits.bits);
 }
 
 Note Calls::infer_bound(const Expr& expr, bool upper) {
   if (has_open_dimension(*this, expr)) {
-    const Note& dimension = infer(sema_.tree.args[expr.list.first + 1].value);
+    const ExprId number = sema_.tree.args[expr.list.first + 1].value;
+    const Note& dimension = infer(number);
+    const ir::TypeId array = infer(sema_.tree.args[expr.list.first].value).type;
+    if (const OpenArray* open = sema_.declared.open_array(array);
+        open != nullptr && dimension.known >= Known::kByCall) {
+      const auto which = ask<Constants>().fold_integer(number);
+      if (!which || !check_dimension(*which, open->dims, array, number)) return {};
+    }
     Note note;
     note.type = sema_.program.types.elementary(ir::Kind::kDint);
     note.calls = dimension.calls;
@@ -34,6 +42,13 @@ Note Calls::infer_bound(const Expr& expr, bool upper) {
   note.type = sema_.program.types.elementary(ir::Kind::kDint);
   note.constant = true;
   return note;
+}
+
+bool Calls::check_dimension(int64_t given, size_t dims, ir::TypeId array, ExprId number) {
+  if (given >= 1 && given <= static_cast<int64_t>(dims)) return true;
+  error(DiagnosticCode::kIndexOutOfBounds, sema_.tree[number].span,
+        "`" + sema_.report.type_text(array) + "` has " + std::to_string(dims) + " dimensions");
+  return false;
 }
 
 std::optional<int64_t> Calls::bound_of(const Expr& expr, bool upper) {
@@ -57,12 +72,7 @@ std::optional<int64_t> Calls::bound_of(const Expr& expr, bool upper) {
   auto dimension = ask<Constants>().fold_integer(number);
   if (!dimension) return std::nullopt;
   const std::vector<ir::Dimension>& dims = sema_.program.types[type].dims;
-  if (*dimension < 1 || *dimension > static_cast<int64_t>(dims.size())) {
-    error(DiagnosticCode::kIndexOutOfBounds, sema_.tree[number].span,
-          "`" + sema_.report.type_text(type) + "` has " + std::to_string(dims.size()) +
-              " dimensions");
-    return std::nullopt;
-  }
+  if (!check_dimension(*dimension, dims.size(), type, number)) return std::nullopt;
   const ir::Dimension& found = dims[static_cast<size_t>(*dimension) - 1];
   return upper ? found.high : found.low;
 }

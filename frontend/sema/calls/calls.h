@@ -20,6 +20,7 @@ class Calls : public Phase {
   bool is_enable(const Arg& arg, const PouInfo* callee) const;
   void mark_enabled(const Expr& call, Note& note) const;
   ExprId conversion_argument(const Expr& call) const;  // invalid when there is not just one
+  bool check_dimension(int64_t given, size_t dims, ir::TypeId array, ExprId number);
   std::optional<int64_t> bound_of(const Expr& expr, bool upper);
   // A type, or the type of a variable, as argument of SIZEOF.
   ir::TypeId type_of_argument(ExprId argument);

@@ -168,23 +168,34 @@ bool OpenFunctions::bind_array(const Match& match, const Spec& spec, NameMap<Not
   if (!argument.type.valid()) return false;
   const ir::Type& array = sema_.program.types[argument.type];
   base::SourceSpan span = sema_.tree[match.arg->value].span;
+  const OpenArray* open = sema_.declared.open_array(argument.type);
+  const Variable& parameter = sema_.declared.variables[match.parameter.index];
+  if (open != nullptr && open->dims == spec.dims.size() &&
+      parameter.section == VarSection::kInOut) {
+    return bind_element(open->element, spec, span, generic);
+  }
   if (array.kind != ir::Kind::kArray || array.dims.size() != spec.dims.size()) {
     error(DiagnosticCode::kBadGenericArgument, span,
           "`" + sema_.report.type_text(argument.type) + "` is no array with " +
               std::to_string(spec.dims.size()) + " dimensions");
     return false;
   }
+  return bind_element(array.base, spec, span, generic);
+}
+
+bool OpenFunctions::bind_element(ir::TypeId given, const Spec& spec, base::SourceSpan span,
+                                 NameMap<Note>& generic) {
   const Spec& element = sema_.tree[spec.element];
   if (element.kind == SpecKind::kNamed && ask<Collection>().is_generic_name(element.name.text)) {
     Note note;
-    note.type = array.base;
+    note.type = given;
     generic.try_emplace(element.name.text, note);
     return true;
   }
   ir::TypeId wanted = Types(sema_).resolve_type(spec.element).type;
-  if (!wanted.valid() || wanted == array.base) return wanted.valid();
+  if (!wanted.valid() || wanted == given) return wanted.valid();
   error(DiagnosticCode::kBadGenericArgument, span,
-        "an array of `" + sema_.report.type_text(array.base) + "` where one of `" +
+        "an array of `" + sema_.report.type_text(given) + "` where one of `" +
             sema_.report.type_text(wanted) + "` is needed");
   return false;
 }

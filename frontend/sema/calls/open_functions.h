@@ -22,6 +22,8 @@ class OpenFunctions : public Phase {
   Callee bind_open(const Expr& call, uint32_t pou);
   bool bind_generic(const Match& match, const Spec& spec, NameMap<Note>& generic);
   bool bind_array(const Match& match, const Spec& spec, NameMap<Note>& generic);
+  bool bind_element(ir::TypeId given, const Spec& spec, base::SourceSpan span,
+                    NameMap<Note>& generic);
   uint32_t string_variant(const Expr& call, uint32_t pou);
   uint32_t instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir::TypeId> generic);
   std::string signature(const PouInfo& pou);

@@ -56,6 +56,12 @@ void Variables::resolve_variable(VarId id) {
     variable.init = use.init;
     return;
   }
+  const bool open = !variable.bound.valid() && is_open_array(variable);
+  if (open) {
+    variable.by_reference = true;
+    variable.type = open_array_type(sema_.tree[variable.decl->spec]);
+    return;
+  }
   TypeUse use = variable.bound.valid() ? TypeUse{variable.bound, {}}
                                        : ask<Types>().resolve_type(variable.decl->spec);
   variable.type = use.type;

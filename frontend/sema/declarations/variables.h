@@ -38,6 +38,9 @@ class Variables : public Phase {
   void check_address(const Variable& variable);
   bool holds_instance(ir::TypeId type) const;
   void check_edge(const Variable& variable);
+  // open_arrays.cc
+  bool is_open_array(const Variable& variable) const;
+  ir::TypeId open_array_type(const Spec& spec);
 };
 
 }  // namespace frontend

@@ -116,7 +116,15 @@ Note Expressions::infer_index(const Expr& expr) {
   }
   if (!note.type.valid()) return {};
   if (is_string(sema_.program.types, note.type)) return infer_character(expr, note);
-  const ir::Type& array = sema_.program.types[note.type];
+  const OpenArray* open = sema_.declared.open_array(note.type);
+  ir::Type array = sema_.program.types[note.type];
+  if (open != nullptr) {
+    array.kind = ir::Kind::kArray;
+    array.base = open->element;
+    array.dims.assign(open->dims, {INT64_MIN, INT64_MAX});
+    note.known = Known::kNo;
+    note.can_trap = true;
+  }
   if (array.kind != ir::Kind::kArray) {
     error(DiagnosticCode::kNotArray, expr.span,
           "`" + sema_.report.type_text(note.type) + "` is not an array");

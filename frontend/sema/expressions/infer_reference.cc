@@ -149,6 +149,12 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   if (call == ReferenceCall::kSizeof) {
     const ir::TypeId type = type_of_argument(argument);
     if (!type.valid()) return {};
+    if (sema_.declared.open_array(type) != nullptr) {
+      error(DiagnosticCode::kBadReference, sema_.tree[argument].span,
+            "an array with open bounds has no size that is known here",
+            "multiply the number of its elements by SIZEOF of one");
+      return {};
+    }
     note.type = sema_.program.types.elementary(ir::Kind::kUdint);
     note.flex = Flex::kInteger;
     // What a block or program has inside is not known before all declarations are.

@@ -153,7 +153,7 @@ TypeUse Types::resolve_array(const Spec& spec) {
   }
   if (spec.open_bounds) {
     error(DiagnosticCode::kSectionNotAllowed, spec.span, "an array with open bounds `[*]`",
-          "only parameters of functions leave the bounds open");
+          "parameters of functions leave the bounds open, and VAR_IN_OUT of methods and blocks");
     return {};
   }
   std::vector<ir::Dimension> dims;
