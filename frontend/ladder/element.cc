@@ -1,5 +1,8 @@
 #include "frontend/ladder/element.h"
 
+#include <algorithm>
+#include <string_view>
+
 #include "frontend/network/pins.h"
 #include "ir/types/types.h"
 
@@ -222,7 +225,8 @@ class ElementReader {
       }
       element.inputs.push_back(std::move(input));
     }
-    if (!power_in) element.inputs.insert(element.inputs.begin(), Input{"EN", {}, {}, span_});
+    const char* arrives = is_timer(element, pins) ? "IN" : "EN";
+    if (!power_in) element.inputs.insert(element.inputs.begin(), Input{arrives, {}, {}, span_});
     bool enable = ir::same_name(element.inputs[made.input].name, "EN");
     std::string way = power_out != nullptr ? power_out->name.text : enable ? "ENO" : usual_output;
     std::vector<std::pair<uint32_t, const Pin*>> sinks;
@@ -235,6 +239,24 @@ class ElementReader {
     made.out = {made.element, out};
     for (auto [number, pin] : sinks) sink(number, *pin, made.element);
     return made;
+  }
+
+  // TON, TOF, TP: power is what they time, unless the box says what IN is.
+  static bool is_timer(const Element& element, const std::vector<Pin>& pins) {
+    static constexpr std::string_view kTimers[] = {"TON", "TOF", "TP"};
+    std::string_view type = element.type.text;
+    if (const size_t dot = type.rfind('.'); dot != type.npos) type.remove_prefix(dot + 1);
+    for (const std::string_view variant : {"_LTIME", "_TIME"}) {
+      const size_t front = type.size() - std::min(type.size(), variant.size());
+      if (ir::same_name(type.substr(front), variant)) type = type.substr(0, front);
+    }
+    const bool named = std::ranges::any_of(
+        kTimers, [&](std::string_view timer) { return ir::same_name(type, timer); });
+    return named && !element.operand.empty() && std::ranges::none_of(pins, [](const Pin& pin) {
+             const std::string_view name = pin.name.text;
+             return !pin.output &&
+                    (name.empty() || ir::same_name(name, "IN") || ir::same_name(name, "EN"));
+           });
   }
 
   Made twice(const Pin& pin, const char* text) {

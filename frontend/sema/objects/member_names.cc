@@ -113,8 +113,29 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   }
   error(DiagnosticCode::kUnknownMember, expr.name.span,
         quoted(block.decl->name) + " has no member " + quoted(expr.name),
-        suggestion(owner, expr.name.text));
+        is_drawn(expr.name) ? ways_out(block) : suggestion(owner, expr.name.text));
   return {};
+}
+
+// Power that leaves a box of a ladder by Q, which no source says.
+bool Objects::is_drawn(const Name& name) const {
+  const uint32_t file = sema_.sources.file_of(name.span.begin);
+  const std::string_view all = sema_.sources.text(file);
+  const size_t begin = name.span.begin.offset - sema_.sources.begin(file).offset;
+  return all.substr(begin, name.span.end.offset - name.span.begin.offset) != name.text;
+}
+
+std::string Objects::ways_out(const PouInfo& block) const {
+  std::string outputs;
+  std::string first;
+  for (VarId id : block.members) {
+    const Variable& variable = resolve(id);
+    if (variable.section != VarSection::kOutput) continue;
+    if (first.empty()) first = variable.name.text;
+    outputs += (outputs.empty() ? "" : ", ") + quoted(variable.name);
+  }
+  if (first.empty()) return "power leaves a box by Q, and this one has no outputs";
+  return "power leaves a box by Q; this one has " + outputs + ": write `" + first + "=>_` there";
 }
 
 // CODESYS and TwinCAT let others read a VAR; they do not write it.

@@ -46,6 +46,8 @@ class Objects : public Phase {
   Found find_code(uint32_t block, std::string_view name) const;
   // Is `pou` the same as, or derived from, `base`?
   bool extends(uint32_t pou, uint32_t base) const;
+  bool is_drawn(const Name& name) const;
+  std::string ways_out(const PouInfo& block) const;
   std::string suggestion(uint32_t block, std::string_view name) const;
 
   // --- expressions (receivers.cc)
