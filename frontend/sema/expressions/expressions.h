@@ -30,6 +30,7 @@ class Expressions : public Phase {
   bool check_part(ir::TypeId whole, uint32_t number, uint8_t size, base::SourceSpan span);
   Note part_note(const Note& whole, uint32_t number, uint8_t size) const;
   std::string_view enumeration_named(const Expr& head);
+  bool refuse_any_part(const Expr& expr, const Note& operand);
   std::optional<Note> infer_named_bit(const Expr& expr, const Note& operand);
   Note infer_index(const Expr& expr);
   Note infer_pointer_index(const Expr& expr, const Note& operand);

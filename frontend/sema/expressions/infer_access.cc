@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/declarations/collection.h"
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/expressions/expressions.h"
 #include "frontend/sema/objects/objects.h"
@@ -11,7 +12,33 @@
 
 namespace frontend {
 
-namespace {}  // namespace
+namespace {
+
+// What an input of type ANY is made of in CODESYS and TwinCAT.
+bool is_any_part(std::string_view name) {
+  return ir::same_name(name, "pvalue") || ir::same_name(name, "diSize") ||
+         ir::same_name(name, "TypeClass");
+}
+
+}  // namespace
+
+// Here such an input is the value itself, and a pointer to it would lead to a copy.
+bool Expressions::refuse_any_part(const Expr& expr, const Note& operand) {
+  if (!operand.variable.valid() || !is_any_part(expr.name.text)) return false;
+  const Variable& variable = resolve(operand.variable);
+  if (variable.decl == nullptr || variable.section != VarSection::kInput) return false;
+  const Spec& spec = sema_.tree[variable.decl->spec];
+  if (spec.kind != SpecKind::kNamed || !ask<Collection>().is_generic_name(spec.name.text) ||
+      sema_.declared.find_field(operand.type, expr.name.text) != nullptr) {
+    return false;
+  }
+  error(DiagnosticCode::kNoMembers, expr.span,
+        quoted(variable.name) + " is the value that is given, of type `" +
+            sema_.report.type_text(operand.type) + "`; it has no " + quoted(expr.name),
+        "use the value itself and SIZEOF(" + std::string(variable.name.text) +
+            "), or pass ADR(..) and SIZEOF(..) as inputs of their own");
+  return true;
+}
 
 Note Expressions::infer_member(const Expr& expr) {
   const Expr& head = sema_.tree[expr.operand];
@@ -26,6 +53,7 @@ Note Expressions::infer_member(const Expr& expr) {
   const Note& operand = infer(expr.operand);
   if (!operand.type.valid()) return {};
   if (auto bit = infer_named_bit(expr, operand)) return *bit;
+  if (refuse_any_part(expr, operand)) return {};
   Note note = operand;
   note.property = kNoPou;
   note.variable = {};

@@ -113,6 +113,12 @@ TypeUse Types::resolve_named(const Spec& spec) {
   const std::string_view name =
       sema_.namespaces.find(NameSort::kDeclaration, spec.qualifiers, spec.name);
   if (auto use = find_type(name)) return *use;
+  if (ask<Collection>().is_generic_name(name)) {
+    error(DiagnosticCode::kUnknownType, spec.name.span,
+          "`" + std::string(name) + "` leaves the type open, which only a function can do",
+          "make it a function, or pass POINTER TO BYTE and a size: (ADR(x), SIZEOF(x))");
+    return {};
+  }
   NearestName nearest(name);
   nearest.offer_all(sema_.declared.types);
   nearest.offer_all(sema_.declared.pou_names);
