@@ -64,6 +64,7 @@ struct Context {
   CallRecord* calls_end = nullptr;
   const PouEntry* pous = nullptr;
   const InstanceEntry* instances = nullptr;
+  const AreaEntry* areas = nullptr;  // as many as instances
   uint32_t instance_count = 0;
   uint32_t pou = 0;
   uint32_t instance = 0;
@@ -82,6 +83,10 @@ struct Context {
   void* native_stack = nullptr;  // of the machine, where native code was entered
   const BoundEntry* bounds = nullptr;
   const RangeEntry* ranges = nullptr;
+  // Generation::override_table()
+  const OverrideEntry* overrides = nullptr;
+  uint64_t override_mask = 0;
+  uint64_t override_factor = 0;
   int64_t task_time_ns = 0;
   // Where it stopped; without tail calls: where it is.
   bool running = true;

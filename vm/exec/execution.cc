@@ -109,6 +109,11 @@ STC_COLD void Execution::prepare(const Generation& generation, const CodeTable& 
   ctx.instance_count = static_cast<uint32_t>(generation.instances().size());
   ctx.bounds = generation.bounds().data();
   ctx.ranges = generation.ranges().data();
+  ctx.areas = generation.areas().data();
+  const OverrideTable& overrides = generation.override_table();
+  ctx.overrides = overrides.rows.data();
+  ctx.override_mask = overrides.mask;
+  ctx.override_factor = overrides.factor;
   ctx.caught = {};
   ctx.trap = {};
   ctx.trap_has_place = false;

@@ -173,17 +173,45 @@ void Generation::write_pool(uint8_t* memory) const {
   if (!pool.empty()) std::memcpy(memory + pool_offset(), pool.data(), pool.size());
 }
 
-// At most half full, so that a search is short.
-void Generation::build_overrides() {
-  const std::vector<ir::LinkedOverride>& rows = image_.image().overrides;
-  overrides_.resize(std::bit_ceil(2 * rows.size() + 1));
-  override_mask_ = overrides_.size() - 1;
-  for (const ir::LinkedOverride& row : rows) {
-    const uint64_t key = uint64_t{row.type.index} << 32 | row.prototype;
-    size_t at = first_place(key);
-    while (overrides_[at].key != ~uint64_t{0}) at = (at + 1) & override_mask_;
-    overrides_[at] = {key, row.target};
+namespace {
+
+// A table of few rows is so large, and its factor so chosen, that hardly any row lies elsewhere
+// than at its first place.
+constexpr size_t kFewRows = 256;
+constexpr uint64_t kMostFactors = 64;
+
+}  // namespace
+
+OverrideTable::OverrideTable(const std::vector<ir::LinkedOverride>& all) {
+  const bool few = all.size() <= kFewRows;
+  rows.resize(std::bit_ceil((few ? 16 : 4) * all.size() + 1));
+  mask = rows.size() - 1;
+  size_t least = SIZE_MAX;
+  uint64_t best = 0;
+  for (uint64_t n = 0; n < (few ? kMostFactors : 1) && least != 0; ++n) {
+    factor = 0x9e3779b97f4a7c15u * (2 * n + 1);
+    const size_t elsewhere = fill(all);
+    if (elsewhere >= least) continue;
+    least = elsewhere;
+    best = factor;
   }
+  if (factor == best) return;
+  factor = best;
+  fill(all);
+}
+
+// How many rows lie elsewhere than at their first place.
+size_t OverrideTable::fill(const std::vector<ir::LinkedOverride>& all) {
+  std::fill(rows.begin(), rows.end(), OverrideEntry());
+  size_t elsewhere = 0;
+  for (const ir::LinkedOverride& row : all) {
+    const uint64_t key = key_of(row.type.index, row.prototype);
+    size_t at = first_place(key);
+    if (rows[at].key != ~uint64_t{0}) ++elsewhere;
+    while (rows[at].key != ~uint64_t{0}) at = (at + 1) & mask;
+    rows[at] = {key, row.target};
+  }
+  return elsewhere;
 }
 
 base::Status Generation::place_code(const Generation* running, const TierOptions& tier,
@@ -235,7 +263,6 @@ base::Result<std::unique_ptr<Generation>> Generation::build(ir::VerifiedImage ve
   if (!placed.ok()) return placed.error();
   const bool shares = running != nullptr && have_one_data(running->image(), image);
   made->data_ = shares ? running->data_ : data_tables(image);
-  made->build_overrides();
   for (const ir::LinkedBound& bound : image.bounds) {
     made->bounds_.push_back({bound.low, bound.count, bound.stride});
   }

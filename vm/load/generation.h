@@ -100,6 +100,20 @@ struct OverrideEntry {
   uint32_t target = 0;
 };
 inline constexpr uint32_t kNoTarget = 0xffffffffu;
+struct OverrideTable {
+  explicit OverrideTable(const std::vector<ir::LinkedOverride>& all);
+  std::vector<OverrideEntry> rows;  // at least one is free
+  uint64_t mask = 0;
+  uint64_t factor = 0;
+  static uint64_t key_of(uint32_t type, uint32_t prototype) {
+    return uint64_t{type} << 32 | prototype;
+  }
+  // Machine code looks there alone and leaves the rest to the interpreter, so most rows are there.
+  size_t first_place(uint64_t key) const { return (key * factor >> 32) & mask; }
+
+ private:
+  size_t fill(const std::vector<ir::LinkedOverride>& all);
+};
 
 // What follows from instances, types and layouts: versions with the same ones share it.
 struct DataTables {
@@ -163,12 +177,13 @@ class Generation {
   const std::vector<RangeEntry>& ranges() const { return ranges_; }
   // POU that stands for the prototype on instances of the type; kNoTarget: none.
   uint32_t target_of(uint32_t type, uint32_t prototype) const {
-    const uint64_t key = uint64_t{type} << 32 | prototype;
-    for (size_t at = first_place(key);; at = (at + 1) & override_mask_) {
-      if (overrides_[at].key == key) return overrides_[at].target;
-      if (overrides_[at].key == ~uint64_t{0}) return kNoTarget;
+    const uint64_t key = OverrideTable::key_of(type, prototype);
+    for (size_t at = overrides_.first_place(key);; at = (at + 1) & overrides_.mask) {
+      if (overrides_.rows[at].key == key) return overrides_.rows[at].target;
+      if (overrides_.rows[at].key == ~uint64_t{0}) return kNoTarget;
     }
   }
+  const OverrideTable& override_table() const { return overrides_; }
   // Machine code of its POUs; null: everything is interpreted, or not made yet.
   const native::Program* native() const { return code()->native.get(); }
   const ir::Bools& bools() const { return bools_; }
@@ -178,12 +193,9 @@ class Generation {
  private:
   Generation(ir::VerifiedImage image, const Generation* running)
       : image_(std::move(image)),
-        bools_(image_.image(), running == nullptr ? nullptr : &running->bools_) {}
+        bools_(image_.image(), running == nullptr ? nullptr : &running->bools_),
+        overrides_(image_.image().overrides) {}
   base::Status place_code(const Generation* running, const TierOptions& tier, CodeTable& code);
-  void build_overrides();
-  size_t first_place(uint64_t key) const {
-    return static_cast<size_t>(key * 0x9e3779b97f4a7c15u >> 32) & override_mask_;
-  }
   ir::VerifiedImage image_;
   ir::Bools bools_;
   std::shared_ptr<const DataTables> data_;
@@ -192,8 +204,7 @@ class Generation {
   std::shared_ptr<NewestCode> code_ = std::make_shared<NewestCode>();
   std::vector<BoundEntry> bounds_;
   std::vector<RangeEntry> ranges_;
-  std::vector<OverrideEntry> overrides_;  // at least one is free
-  size_t override_mask_ = 0;
+  OverrideTable overrides_;
   uint32_t try_depth_ = 0;
 };
 

@@ -65,6 +65,12 @@ struct Demands {
   uint32_t clobbers_floats = 0;
   uint8_t shares = 0xff;  // operands whose register the result may take: bit i; 0x10: the index
   bool clobbers_all = false;
+  bool wants(uint32_t reg) const {
+    for (const int8_t fixed : in) {
+      if (fixed == static_cast<int>(reg)) return true;
+    }
+    return false;
+  }
 };
 
 class Target {

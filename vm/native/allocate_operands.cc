@@ -21,8 +21,7 @@ Place Allocator::fixed_operand(Val v, uint32_t reg, const Demands& demands) {
     const bool wanted = next_use(other, position_) != kNone;
     uint32_t to = kNone;
     for (uint32_t r = 0; r < count_[0] && to == kNone; ++r) {
-      const bool fixed = (demands.clobbers >> r & 1) != 0 || demands.in[0] == static_cast<int>(r) ||
-                         demands.in[1] == static_cast<int>(r);
+      const bool fixed = (demands.clobbers >> r & 1) != 0 || demands.wants(r);
       if (regs[r] == kNone && !fixed) to = r;
     }
     if (wanted && to != kNone) {
@@ -37,9 +36,7 @@ Place Allocator::fixed_operand(Val v, uint32_t reg, const Demands& demands) {
       // The value itself moves away, the copy stays.
       uint32_t to = kNone;
       for (uint32_t r = 0; r < count_[0] && to == kNone; ++r) {
-        if (regs[r] == kNone && !(demands.clobbers >> r & 1) &&
-            demands.in[1] != static_cast<int>(r))
-          to = r;
+        if (regs[r] == kNone && !(demands.clobbers >> r & 1) && !demands.wants(r)) to = r;
       }
       if (to != kNone) {
         move({Place::kRegister, false, false, to, 0}, place, 8);

@@ -77,6 +77,19 @@ class Builder {
   void fork(const Fork& fork);
   void leave();
 
+  // build_references.cc
+  struct Object {
+    Val row = kNone;  // of Context::areas
+    Val id = kNone;
+    Val type = kNone;
+  };
+  Val of_context(size_t offset, uint8_t width);
+  Val of_table(Val table, Val row, size_t offset, uint8_t width);
+  Object object_of(Val handle);
+  void leave_unless_one_of(const std::vector<ir::TypeId>& kinds, Val type);
+  Val target_of(Val type, uint32_t prototype);
+  void call_reference();
+
   // build_memory.cc
   struct Piece {
     uint32_t at = 0;

@@ -20,7 +20,7 @@ bool only_computes(Opcode op) {
 
 void Builder::special() {
   const Opcode op = u_.opcode();
-  if (!only_computes(op) && facts_.body_at(unit_) == nullptr) store_deferred();
+  if (!only_computes(op) && !facts_.has_body(unit_)) store_deferred();
   switch (op) {
     case Opcode::LEA:
       if (u_.base_b() == ir::Base::kConst) return write_a(pool_address(x_.x()));
@@ -82,6 +82,10 @@ void Builder::special() {
       return call_instance(body ? CallKind::kBody : CallKind::kMethod, body ? 0 : x_.x(), slot,
                            load_id(slot));
     }
+    case Opcode::CALL_REF:
+    case Opcode::CALL_METHOD_REF:
+    case Opcode::CALL_VIRTUAL:
+      return call_reference();
     default:
       return call(CallKind::kSlow, 0, node(Op::kCall, 0));
   }
@@ -127,6 +131,13 @@ void Builder::call_body(Node made) {
     made.exit = exit_here(true);
   }
   f_.exits.back().fuel = true;
+  Call& call = f_.calls.back();
+  if (call.kind == CallKind::kVirtual) {
+    for (const InPlace& here : facts_.bodies_at(unit_)) {
+      call.targets.push_back({here.type.index, here.pou});
+    }
+    call.miss = exit_here(true);
+  }
   append(made);
   kill_memory();
 }
@@ -134,13 +145,14 @@ void Builder::call_body(Node made) {
 // Recursion counts its depth.
 bool Builder::is_slow(CallKind kind, uint32_t pou) const {
   if (kind == CallKind::kBody) return facts_.recursive_bodies();
+  if (kind == CallKind::kVirtual) return facts_.recursive_methods();
   return kind == CallKind::kSlow || facts_.image().pous[pou].recursion_depth != 0;
 }
 
 void Builder::call_instance(CallKind kind, uint32_t pou, const Mem& slot, Val id) {
   Node made = node(Op::kCall, 0, id);
   if (is_slow(kind, pou)) return call(kind, pou, made);
-  const std::optional<Mem> area = facts_.body_at(unit_) != nullptr ? area_of(slot) : std::nullopt;
+  const std::optional<Mem> area = facts_.has_body(unit_) ? area_of(slot) : std::nullopt;
   if (area) {
     made.mem = *area;
   } else {
@@ -154,11 +166,11 @@ void Builder::call(CallKind kind, uint32_t pou, Node made) {
   if (is_slow(kind, pou)) kind = CallKind::kSlow;
   made.call = static_cast<uint32_t>(f_.calls.size());
   f_.calls.push_back({kind, pou, uint32_t{u_.a} * 8, unit_, facts_.callee(unit_),
-                      facts_.next(unit_), facts_.body_at(unit_) != nullptr});
+                      facts_.next(unit_), facts_.has_body(unit_)});
   if (f_.calls.back().inlined) return call_body(made);
   facts_.each_live_behind(unit_, [&](uint32_t v) { store_slot(v); });
   if (kind == CallKind::kSlow) {
-    made.in[0] = made.in[1] = kNone;
+    made.in[0] = made.in[1] = made.in[2] = kNone;
     for (const Access& access : accesses_of(u_)) {
       const uint32_t v = access.reads ? facts_.variable(access) : kNone;
       if (v != kNone && f_.variables[v].slot) store_slot(v);

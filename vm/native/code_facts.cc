@@ -16,12 +16,23 @@ bool names_instance(ir::Opcode op) {
          op == ir::Opcode::CALL_METHOD_AT;
 }
 
+// What machine code compares the type of an instance with, and the body that it runs.
+void add_kinds(const ImageFacts& common, ir::TypeId type, std::vector<uint64_t>& out) {
+  const std::vector<ir::TypeId>* const kinds = common.kinds_of(type);
+  out.push_back(kinds == nullptr ? 0 : kinds->size());
+  if (kinds == nullptr) return;
+  for (const ir::TypeId kind : *kinds) {
+    out.push_back(uint64_t{kind.index} << 32 | common.body_of[kind.index]);
+  }
+}
+
 }  // namespace
 
 base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
                       std::vector<uint64_t>& out) {
   out.assign({pou.frame_size, pou.slots.size(), pou.merges.size(),
-              (common.recursive_bodies ? 1u : 0u) | (common.clean_bools ? 2u : 0u)});
+              (common.recursive_bodies ? 1u : 0u) | (common.clean_bools ? 2u : 0u) |
+                  (common.recursive_methods ? 4u : 0u)});
   for (const ir::FrameSlot& slot : pou.slots) {
     out.push_back(uint64_t{slot.offset} << 32 | static_cast<uint64_t>(slot.cls) << 24 |
                   static_cast<uint64_t>(slot.kind) << 16 | static_cast<uint64_t>(slot.local) << 8 |
@@ -62,6 +73,18 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
       out.insert(out.end(), {callee, called.recursion_depth,
                              may_share_instance(image, pou, called) ? uint64_t{1} : 0});
     }
+    if (u.opcode() == ir::Opcode::CALL_REF) add_kinds(common, ir::region_of_field(x.x()).type, out);
+    if (u.opcode() == ir::Opcode::CALL_VIRTUAL) {
+      for (const ir::LinkedOverride& one : common.targets_of(x.x())) {
+        const ir::LinkedPou& target = image.pous[one.target];
+        out.insert(out.end(), {one.type.index, one.target, target.recursion_depth,
+                               may_share_instance(image, pou, target) ? uint64_t{1} : 0});
+      }
+      out.push_back(kNone);
+    }
+    if (u.opcode() == ir::Opcode::CALL_METHOD_REF) {
+      add_kinds(common, image.pous[x.x()].self, out);
+    }
     if (u.opcode() == ir::Opcode::COPY) {
       out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.x())));
     }
@@ -88,6 +111,11 @@ bool rely_on_the_same(const ir::Image& before, const ir::Image& after) {
   return before.types.is_one_with(after.types) && before.layouts.is_one_with(after.layouts) &&
          before.instances.is_one_with(after.instances) && before.data.is_one_with(after.data) &&
          before.globals == after.globals && before.pous.size() == after.pous.size() &&
+         std::equal(before.overrides.begin(), before.overrides.end(), after.overrides.begin(),
+                    after.overrides.end(),
+                    [](const ir::LinkedOverride& a, const ir::LinkedOverride& b) {
+                      return a.type == b.type && a.prototype == b.prototype && a.target == b.target;
+                    }) &&
          begins_with(after.pool, before.pool, std::equal_to<>()) &&
          begins_with(after.bounds.all(), before.bounds.all(),
                      [](const ir::LinkedBound& a, const ir::LinkedBound& b) {

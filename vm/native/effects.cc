@@ -51,33 +51,56 @@ uint32_t Facts::callee(uint32_t i) const {
       return called_body(*image_, *common_, *pou_, unit);
     case Opcode::CALL_METHOD:
     case Opcode::CALL_METHOD_AT:
+    case Opcode::CALL_METHOD_REF:
       return extension(i).x();
+    case Opcode::CALL_REF: {
+      const std::vector<ir::TypeId>* const kinds = kinds_called(i);
+      const bool one = kinds != nullptr && kinds->size() == 1;
+      return one ? common_->body_of[kinds->front().index] : kNone;
+    }
     default:
       return kNone;
   }
+}
+
+// What may stand in the place of the call; false: something may run that has no body.
+bool Facts::find_body(const BodyOf& body_of, uint32_t i, std::vector<InPlace>& out) const {
+  const Opcode op = code_[i].opcode();
+  if (op == Opcode::CALL_VIRTUAL) {
+    for (const ir::LinkedOverride& row : common_->targets_of(extension(i).x())) {
+      out.push_back({body_of(row.target), row.target, row.type});
+    }
+  } else if (const uint32_t number = callee(i); number != kNone) {
+    out.push_back({body_of(number), number, {}});
+  }
+  return !out.empty() && std::all_of(out.begin(), out.end(), [&](const InPlace& here) {
+    return here.body != nullptr && image_->pous[here.pou].recursion_depth == 0;
+  });
 }
 
 void Facts::find_bodies(const BodyOf& body_of) {
   if (!body_of) return;
   size_t nodes = code_.size();
   uint32_t calls = 0;
+  std::vector<InPlace> found;
   for (uint32_t i = 0; i < code_.size(); i = next(i)) {
-    const uint32_t number = is_call(code_[i].opcode()) ? callee(i) : kNone;
-    if (number == kNone || image_->pous[number].recursion_depth != 0) continue;
     const Opcode op = code_[i].opcode();
-    const bool of_instance = op == Opcode::CALL_INST || op == Opcode::CALL_INST_AT;
+    if (!is_call(op) || nodes > kMostEffectNodes) continue;
+    const bool of_instance =
+        op == Opcode::CALL_INST || op == Opcode::CALL_INST_AT || op == Opcode::CALL_REF;
     if (of_instance && recursive_bodies()) continue;
-    const Body* const body = nodes > kMostEffectNodes ? nullptr : body_of(number);
-    if (body == nullptr) continue;
+    if (op == Opcode::CALL_METHOD_REF && kinds_called(i) == nullptr) continue;
+    found.clear();
+    if (!find_body(body_of, i, found)) continue;
     if (loop_of_[block_at_[i]] == kNone && ++calls % kCallsBetween == 0) continue;
-    nodes += body->function.nodes.size();
-    bodies_[i] = body;
+    for (const InPlace& here : found) nodes += here.body->function.nodes.size();
+    bodies_[i] = found;
   }
 }
 
-const Body* Facts::body_at(uint32_t unit) const {
-  const Body* const* const found = bodies_.find(unit);
-  return found == nullptr ? nullptr : *found;
+std::span<const InPlace> Facts::bodies_at(uint32_t unit) const {
+  const std::vector<InPlace>* const found = bodies_.find(unit);
+  return found == nullptr ? std::span<const InPlace>() : std::span<const InPlace>(*found);
 }
 
 bool may_share_instance(const ir::Image& image, const ir::LinkedPou& a, const ir::LinkedPou& b) {
@@ -86,9 +109,8 @@ bool may_share_instance(const ir::Image& image, const ir::LinkedPou& a, const ir
 }
 
 // The callee's frame is its own, from the arguments on.
-void Facts::used_by_body(uint32_t unit, const Effects::Use& use, std::vector<uint32_t>& out) const {
-  const bool own =
-      use.own_instance && may_share_instance(*image_, *pou_, image_->pous[callee(unit)]);
+void Facts::used_by_body(uint32_t pou, const Effects::Use& use, std::vector<uint32_t>& out) const {
+  const bool own = use.own_instance && may_share_instance(*image_, *pou_, image_->pous[pou]);
   for (uint32_t v = 0; v < variables_.size(); ++v) {
     const Variable& variable = variables_[v];
     if (variable.slot || variable.constant) continue;

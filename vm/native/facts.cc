@@ -259,7 +259,7 @@ void Facts::find_loop_effects() {
     changed.clear();
     const uint32_t behind = blocks_[loop.last].behind;
     for (uint32_t i = blocks_[loop.head].first; i < behind; i = next(i)) {
-      if (is_call(code_[i].opcode()) && body_at(i) == nullptr) loop_calls_[l] = true;
+      if (is_call(code_[i].opcode()) && !has_body(i)) loop_calls_[l] = true;
       for (const auto& [v, reads, writes] : named(i)) {
         if (reads) loop_reads_[l].push_back(v);
         if (!writes) continue;

@@ -86,14 +86,22 @@ struct ImageFacts {
   // By their slots; what differs between instances of the type is left out.
   const std::vector<Children>& children(ir::TypeId type) const;
   std::vector<uint32_t> body_of;  // by type: the POU that runs when its instance is called; kNone
-  bool recursive_bodies = false;  // does any block call itself?
-  bool clean_bools = false;       // are all BOOLs in memory 0 or 1?
+  // The type of a function block and those that extend it; null: they are many, or it is none.
+  const std::vector<ir::TypeId>* kinds_of(ir::TypeId type) const;
+  // What a call of the prototype runs, by type; none: too many.
+  std::vector<ir::LinkedOverride> targets_of(uint32_t prototype) const;
+  bool recursive_bodies = false;   // does any block call itself?
+  bool recursive_methods = false;  // or any method?
+  bool clean_bools = false;        // are all BOOLs in memory 0 or 1?
 
  private:
   bool same_for_all(ir::TypeId type, Children& children) const;
   const ir::Image& image_;
   std::vector<std::vector<uint32_t>> instances_of_;  // live ones, by type and what it is made from
   mutable ByKey<std::vector<Children>> children_;    // by type: as far as asked for
+  std::vector<std::pair<ir::TypeId, ir::TypeId>> extensions_;  // {base, what extends it}, sorted
+  std::vector<uint32_t> by_prototype_;                         // rows of Image::overrides, sorted
+  mutable ByKey<std::vector<ir::TypeId>> kinds_;               // by type: as far as asked for
 };
 // The frame slot that covers the offset, or the last one in front of it; kNone: there is none.
 uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);
@@ -119,6 +127,13 @@ struct Body {
   Effects effects;
 };
 Effects effects_of(const Function& body);
+
+// In the place of a call: the body of a POU, on instances of `type` where the call may run several.
+struct InPlace {
+  const Body* body = nullptr;
+  uint32_t pou = 0;
+  ir::TypeId type = {};
+};
 
 class Facts {
  public:
@@ -153,8 +168,9 @@ class Facts {
   uint32_t loop_of(Block block) const { return loop_of_[block]; }  // innermost, or kNone
   // A call that no body stands for.
   bool has_call(uint32_t loop) const { return loop_calls_[loop]; }
-  // In the place of the call at the unit; null: none.
-  const Body* body_at(uint32_t unit) const;
+  // In the place of the call at the unit; none: it calls.
+  std::span<const InPlace> bodies_at(uint32_t unit) const;
+  bool has_body(uint32_t unit) const { return !bodies_at(unit).empty(); }
   // Is the variable's memory changed in the loop other than by its name?
   bool killed_in(uint32_t loop, uint32_t variable) const;
   // Variables that the loop may keep in registers, their memory being older until it ends or is
@@ -200,6 +216,9 @@ class Facts {
   // The children of the own instance's slot at `offset`; null: they may lie anywhere.
   const Children* children(uint64_t offset) const;
   bool recursive_bodies() const { return common_->recursive_bodies; }
+  bool recursive_methods() const { return common_->recursive_methods; }
+  // What the reference of a call may name (ImageFacts::kinds_of); null: nobody knows.
+  const std::vector<ir::TypeId>* kinds_called(uint32_t unit) const;
   bool clean_bools() const { return common_->clean_bools; }
   void successors(Block block, Block out[2], uint32_t& count) const;
 
@@ -209,7 +228,8 @@ class Facts {
   bool find_loops(std::string& why);
   bool fits(std::string& why) const;
   void find_bodies(const BodyOf& body_of);
-  void used_by_body(uint32_t unit, const Effects::Use& use, std::vector<uint32_t>& out) const;
+  bool find_body(const BodyOf& body_of, uint32_t unit, std::vector<InPlace>& out) const;
+  void used_by_body(uint32_t pou, const Effects::Use& use, std::vector<uint32_t>& out) const;
   void find_pinned();
   void find_variables();
   void find_overlaps();
@@ -240,7 +260,7 @@ class Facts {
   std::vector<Loop> loops_;
   std::vector<uint32_t> loop_of_;
   std::vector<bool> loop_calls_;
-  ByKey<const Body*> bodies_;  // by unit
+  ByKey<std::vector<InPlace>> bodies_;  // by unit
   std::vector<std::vector<uint32_t>> loop_reads_;
   std::vector<std::vector<uint32_t>> loop_killed_;
   std::vector<std::vector<uint32_t>> loop_deferred_;

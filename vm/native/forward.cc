@@ -67,7 +67,8 @@ class Forwarder {
     mem.index = real(mem.index);
     mem.pointer = real(mem.pointer);
     const Node* const enter = maker(mem.pointer);
-    if (mem.base == MemBase::kPointer && mem.index == kNone && enter != nullptr) {
+    const bool enters = enter != nullptr && enter->op == Op::kEnter;
+    if (mem.base == MemBase::kPointer && mem.index == kNone && enters) {
       if (enter->mem.inside) {
         const int64_t disp = mem.disp;
         mem = enter->mem;
@@ -86,9 +87,14 @@ class Forwarder {
   Root instance(Val area) const {
     Root root;
     const Node* const made = maker(area);
-    if (made == nullptr || made->op != Op::kInstance) return root;
+    if (made == nullptr) return root;
+    // What no code writes and no memory of the program holds: the place of an area.
+    const bool of_handle =
+        made->op == Op::kLoad && made->immutable && made->mem.base == MemBase::kPointer;
+    if (made->op != Op::kInstance && !of_handle) return root;
     root.kind = Root::kInstance;
     root.area = area;
+    if (of_handle) return root;
     const Node* const id = maker(real(made->in[0]));
     root.part = id != nullptr && id->op == Op::kLoad && id->mem.base == MemBase::kSelf;
     return root;
@@ -101,7 +107,7 @@ class Forwarder {
         return {mem.inside ? Root::kInside : Root::kSelf, kNone, false};
       case MemBase::kPointer: {
         const Node* const enter = maker(mem.pointer);
-        if (enter == nullptr) return {};
+        if (enter == nullptr || enter->op != Op::kEnter) return {};
         if (enter->mem.inside) return {Root::kInside, kNone, false};
         return instance(real(enter->in[1]));
       }

@@ -70,6 +70,8 @@ void FunctionEmitter<Self, Registers>::node(const Step& step) {
       return a_.store(CONTEXT(task_time_ns), Registers::kScratch, 8);
     case Op::kPool:
       return self().pool(step);
+    case Op::kContext:
+      return a_.load(integer_register(step.result), context(n.imm), n.width);
     case Op::kNative:
       return self().native(n);
     case Op::kHelper:
@@ -115,11 +117,11 @@ void FunctionEmitter<Self, Registers>::call(const Node& n) {
             Registers::indexed(Registers::kPouNumber, Registers::kId, sizeof(InstanceEntry),
                                offsetof(InstanceEntry, pou)),
             4);
-  } else {
+  } else if (c.kind != CallKind::kVirtual) {
     a_.move_imm(Registers::kPouNumber, c.pou);
   }
   if (c.kind == CallKind::kFunction) self().store_word(CONTEXT(instance), 0);
-  if (c.kind == CallKind::kBody || c.kind == CallKind::kMethod) {
+  if (c.kind == CallKind::kBody || c.kind == CallKind::kMethod || c.kind == CallKind::kVirtual) {
     a_.store(CONTEXT(instance), Registers::kId, 4);
     self().place_in_data(Registers::kSelf, Registers::kPointer);
   }

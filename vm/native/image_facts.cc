@@ -1,5 +1,6 @@
 // What follows from the tables of an image, whatever the code of a POU is.
 #include <algorithm>
+#include <numeric>
 
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
@@ -55,6 +56,7 @@ std::span<const ir::Unit> ImageFacts::code_of(const ir::Image& image,
 namespace {
 
 constexpr int64_t kFarthest = int64_t{1} << 29;  // of what an instruction reaches from an instance
+constexpr size_t kMostKinds = 8;                 // that the type of an instance is compared with
 
 }  // namespace
 
@@ -74,9 +76,23 @@ ImageFacts::ImageFacts(const ir::Image& image, bool are_bools_clean,
                                                                 : ir::TypeId();
     }
   }
+  for (uint32_t i = 0; i < image.types.size(); ++i) {
+    const ir::Type& type = image.types[ir::TypeId(i)];
+    const bool extends = type.kind == ir::Kind::kFunctionBlock && type.base.valid();
+    if (extends) extensions_.push_back({type.base, ir::TypeId(i)});
+  }
+  std::sort(extensions_.begin(), extensions_.end());
+  by_prototype_.resize(image.overrides.size());
+  std::iota(by_prototype_.begin(), by_prototype_.end(), 0);
+  std::stable_sort(by_prototype_.begin(), by_prototype_.end(), [&](uint32_t a, uint32_t b) {
+    return image.overrides[a].prototype < image.overrides[b].prototype;
+  });
   for (uint32_t p = 0; p < image.pous.size(); ++p) {
     const ir::LinkedPou& pou = image.pous[p];
-    if (!ir::is_body(pou.kind)) continue;
+    if (!ir::is_body(pou.kind)) {
+      recursive_methods |= pou.self.valid() && pou.recursion_depth != 0;
+      continue;
+    }
     if (pou.self.valid()) body_of[pou.self.index] = p;
     recursive_bodies |= pou.recursion_depth != 0;
   }
@@ -123,6 +139,44 @@ const std::vector<Children>& ImageFacts::children(ir::TypeId type) const {
   std::sort(all.begin(), all.end(),
             [](const Children& a, const Children& b) { return a.slot < b.slot; });
   return children_[type.index] = std::move(all);
+}
+
+const std::vector<ir::TypeId>* ImageFacts::kinds_of(ir::TypeId type) const {
+  if (!image_.types.contains(type)) return nullptr;
+  if (image_.types[type].kind != ir::Kind::kFunctionBlock) return nullptr;
+  const std::vector<ir::TypeId>* all = kinds_.find(type.index);
+  if (all == nullptr) {
+    std::vector<ir::TypeId> found = {type};
+    for (size_t next = 0; next < found.size() && found.size() <= kMostKinds; ++next) {
+      auto at = std::lower_bound(extensions_.begin(), extensions_.end(),
+                                 std::pair(found[next], ir::TypeId(0)));
+      for (; at != extensions_.end() && at->first == found[next]; ++at) {
+        found.push_back(at->second);
+        if (found.size() > kMostKinds) break;
+      }
+    }
+    all = &(kinds_[type.index] = std::move(found));
+  }
+  return all->size() > kMostKinds ? nullptr : all;
+}
+
+std::vector<ir::LinkedOverride> ImageFacts::targets_of(uint32_t prototype) const {
+  const std::vector<ir::LinkedOverride>& rows = image_.overrides;
+  auto at = std::lower_bound(by_prototype_.begin(), by_prototype_.end(), prototype,
+                             [&](uint32_t row, uint32_t p) { return rows[row].prototype < p; });
+  std::vector<ir::LinkedOverride> out;
+  for (; at != by_prototype_.end() && rows[*at].prototype == prototype; ++at) {
+    if (out.size() == kMostKinds) return {};
+    out.push_back(rows[*at]);
+  }
+  return out;
+}
+
+const std::vector<ir::TypeId>* Facts::kinds_called(uint32_t i) const {
+  const Opcode op = code_[i].opcode();
+  const uint32_t x = extension(i).x();
+  return common_->kinds_of(op == Opcode::CALL_REF ? ir::region_of_field(x).type
+                                                  : image_->pous[x].self);
 }
 
 const Children* Facts::children(uint64_t offset) const {

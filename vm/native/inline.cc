@@ -62,11 +62,6 @@ class Inliner {
   }
 
  private:
-  Callee callee(const Node& node) const {
-    if (node.op != Op::kCall || !f_.calls[node.call].inlined) return {};
-    return callee_of_(f_.calls[node.call].known);
-  }
-
   void split(Block b) {
     BasicBlock old = std::move(f_.blocks[b]);
     first_[b] = static_cast<Block>(blocks_.size());
@@ -86,13 +81,17 @@ class Inliner {
     part.reloads = std::move(old.reloads);
     part.dirty = std::move(old.dirty);
     for (const uint32_t n : old.nodes) {
-      const Callee body = callee(f_.nodes[n]);
-      part.nodes.push_back(n);
-      if (body.function == nullptr) continue;
-      part.end.kind = EndKind::kJump;
-      part.end.target[0] = static_cast<Block>(blocks_.size()) + 1;
-      blocks_.push_back(std::move(part));
-      copy(n, body, old.loop);
+      const bool inlined = f_.nodes[n].op == Op::kCall && f_.calls[f_.nodes[n].call].inlined;
+      if (!inlined) {
+        part.nodes.push_back(n);
+        continue;
+      }
+      if (f_.calls[f_.nodes[n].call].targets.empty()) {
+        part.nodes.push_back(n);
+        copy_one(n, std::move(part), old.loop);
+      } else {
+        copy_several(n, std::move(part), old.unit, old.loop);
+      }
       part = BasicBlock();
       part.unit = old.unit;
       part.loop = old.loop;
@@ -102,8 +101,81 @@ class Inliner {
     blocks_.push_back(std::move(part));
   }
 
-  // The callee's blocks; its returns lead to the block that comes next.
-  void copy(uint32_t call_node, const Callee& body, uint32_t loop) {
+  void copy_one(uint32_t call_node, BasicBlock part, uint32_t loop) {
+    const Callee body = callee_of_(f_.calls[f_.nodes[call_node].call].known);
+    const Block begin = static_cast<Block>(blocks_.size()) + 1;
+    part.end.kind = EndKind::kJump;
+    part.end.target[0] = begin;
+    blocks_.push_back(std::move(part));
+    copy(call_node, body, loop, begin + static_cast<Block>(body.function->blocks.size()));
+  }
+
+  // A block asks for each type; then there is one that leaves, and the bodies, each with one in
+  // front that enters it.
+  void copy_several(uint32_t call_node, BasicBlock part, uint32_t unit, uint32_t loop) {
+    const Call call = f_.calls[f_.nodes[call_node].call];
+    f_.nodes[call_node].dead = true;
+    std::vector<std::pair<uint32_t, Block>> enters;  // POU, the block that enters it
+    const auto miss = static_cast<Block>(blocks_.size() + call.targets.size());
+    Block next = miss + 1;
+    const auto enter_of = [&](uint32_t pou) {
+      for (const auto& [known, block] : enters) {
+        if (known == pou) return block;
+      }
+      enters.push_back({pou, next});
+      next += 1 + static_cast<Block>(callee_of_(pou).function->blocks.size());
+      return enters.back().second;
+    };
+    const Val type = f_.nodes[call_node].in[3];
+    for (size_t i = 0; i < call.targets.size(); ++i) {
+      part.end.kind = EndKind::kBranch;
+      part.end.cond = Cond::kEq;
+      part.end.width = 4;
+      part.end.in[0] = type;
+      part.end.in[1] = static_cast<Val>(f_.values.size());
+      f_.values.push_back({false, 4, true, call.targets[i].type, kNone, 0});
+      part.end.target[0] = enter_of(call.targets[i].pou);
+      part.end.target[1] = static_cast<Block>(blocks_.size()) + 1;
+      blocks_.push_back(std::move(part));
+      part = BasicBlock();
+      part.unit = unit;
+      part.loop = loop;
+    }
+    part.end.kind = EndKind::kExit;
+    part.end.exit = call.miss;
+    blocks_.push_back(std::move(part));
+    for (const auto& [pou, block] : enters) {
+      BasicBlock enter;
+      enter.unit = unit;
+      enter.loop = loop;
+      enter.nodes.push_back(enter_node(call_node, call, pou));
+      enter.end.kind = EndKind::kJump;
+      enter.end.target[0] = block + 1;
+      blocks_.push_back(std::move(enter));
+      copy(blocks_.back().nodes[0], callee_of_(pou), loop, next);
+    }
+  }
+
+  // A node, exit and call of its own for each body.
+  uint32_t enter_node(uint32_t call_node, const Call& several, uint32_t pou) {
+    Node node = f_.nodes[call_node];
+    node.dead = false;
+    node.in[3] = kNone;
+    node.call = static_cast<uint32_t>(f_.calls.size());
+    Call call = several;
+    call.kind = CallKind::kMethod;
+    call.known = pou;
+    call.targets.clear();
+    f_.calls.push_back(std::move(call));
+    Exit exit = f_.exits[node.exit];
+    node.exit = static_cast<uint32_t>(f_.exits.size());
+    f_.exits.push_back(std::move(exit));
+    f_.nodes.push_back(node);
+    return static_cast<uint32_t>(f_.nodes.size() - 1);
+  }
+
+  // The callee's blocks; its returns lead to `behind`.
+  void copy(uint32_t call_node, const Callee& body, uint32_t loop, Block behind) {
     const Function& g = *body.function;
     bodies_.push_back(f_.calls[f_.nodes[call_node].call].known);
     Node& call = f_.nodes[call_node];
@@ -131,7 +203,6 @@ class Inliner {
     const Val id = call.in[0];
     value_of_.assign(g.values.size(), kNone);
     const auto begin = static_cast<Block>(blocks_.size());
-    const Block behind = begin + static_cast<Block>(g.blocks.size());
     for (Val v = 0; v < g.values.size(); ++v) {
       value_of_[v] = static_cast<Val>(f_.values.size());
       f_.values.push_back(g.values[v]);

@@ -84,10 +84,11 @@ enum class Op : uint8_t {
   kInstance,
   kTaskTime,
   kAdvanceTime,
-  kPool,    // result := data address of the image's constants
-  kNative,  // the function at address `imm`, of data memory and in; what calls lose is lost
-  kHelper,  // `unit` by its handler; every register is lost
-  kCall,    // `call`; nothing but constants lives across, unless it becomes kEnter
+  kPool,     // result := data address of the image's constants
+  kContext,  // result := what the Context holds at byte `imm`; a pointer there is no data address
+  kNative,   // the function at address `imm`, of data memory and in; what calls lose is lost
+  kHelper,   // `unit` by its handler; every register is lost
+  kCall,     // `call`; nothing but constants lives across, unless it becomes kEnter
   // begins the body of `call`, which follows; the result points to its instance: in[1], or mem
   kEnter,
 };
@@ -178,9 +179,14 @@ struct Exit {
   std::vector<SlotValue> slots;
 };
 
-// kSlow: the interpreter enters the callee, which returns here.
-enum class CallKind : uint8_t { kFunction, kBody, kMethod, kOwn, kSlow };
+// kVirtual: in[2] of the node is the number of the POU. kSlow: the interpreter enters the callee,
+// which returns here.
+enum class CallKind : uint8_t { kFunction, kBody, kMethod, kOwn, kVirtual, kSlow };
 struct Call {
+  struct Target {
+    uint32_t type = 0;
+    uint32_t pou = 0;
+  };
   CallKind kind = CallKind::kFunction;
   uint32_t pou = 0;         // of kBody the instance says it
   uint32_t frame_step = 0;  // bytes from this frame to the callee's
@@ -188,6 +194,10 @@ struct Call {
   uint32_t known = kNone;  // the POU, when it is known before
   uint32_t behind = 0;     // the unit where the caller goes on
   bool inlined = false;    // a body stands in its place
+  // One body for each type that the instance may be of, which in[3] of the node says; the exit for
+  // all others.
+  std::vector<Target> targets = {};
+  uint32_t miss = kNone;
 };
 
 struct Inlined {

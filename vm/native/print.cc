@@ -14,7 +14,8 @@ const char* const kNames[] = {
     "selectcmp",  "sext",        "zext",   "fadd",    "fsub",    "fmul",     "fdiv",
     "fmin",       "fmax",        "fneg",   "fabs",    "fsqrt",   "fcompare", "fselect",
     "inttofloat", "floattoint",  "fwidth", "bitstof", "ftobits", "exitif",   "instance",
-    "tasktime",   "advancetime", "pool",   "native",  "helper",  "call",     "enter"};
+    "tasktime",   "advancetime", "pool",   "context", "native",  "helper",   "call",
+    "enter"};
 const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
                               "<u", "<=u", ">u", ">=u", "no bit", "any bit"};
 const char* const kEnds[] = {"jump",   "loop", "branch",     "take fuel",

@@ -147,7 +147,8 @@ bool is_reached(const Reach& reach, const Variable& variable) {
 }  // namespace
 
 void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
-  if (const Body* const body = body_at(i)) return used_by_body(i, body->effects.writes, out);
+  for (const InPlace& here : bodies_at(i)) used_by_body(here.pou, here.body->effects.writes, out);
+  if (has_body(i)) return;
   if (const Reach* const target = targets_.find(i)) touched(*target, out);
   if (code_[i].opcode() != Opcode::NATIVE) return;
   // The result lies in the first slot.
@@ -163,7 +164,7 @@ void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
 
 void Facts::seen(uint32_t i, std::vector<uint32_t>& out) const {
   const Opcode op = code_[i].opcode();
-  if (const Body* const body = body_at(i)) used_by_body(i, body->effects.reads, out);
+  for (const InPlace& here : bodies_at(i)) used_by_body(here.pou, here.body->effects.reads, out);
   if (op == Opcode::COPY) touched(*sources_.find(i), out);
   if (op < Opcode::LD_B || op > Opcode::LD_F64) return;
   const Reach* const found = reach_.find(code_[i].b);
@@ -228,7 +229,7 @@ void Facts::touched(const Reach& reach, std::vector<uint32_t>& out) const {
 
 bool Facts::writes_memory(uint32_t i) const {
   const Opcode op = code_[i].opcode();
-  return stores_through(op) || op == Opcode::NATIVE || body_at(i) != nullptr;
+  return stores_through(op) || op == Opcode::NATIVE || has_body(i);
 }
 
 // Only of innermost loops without calls: nothing but their own code is executed until they end, or

@@ -35,6 +35,7 @@ Demands Arm64Target::demands(const Function&, const Node& node) const {
   if (node.op == Op::kCall) {
     if (node.in[0] != kNone) d.in[0] = 0;
     if (node.in[1] != kNone) d.in[1] = 1;
+    if (node.in[2] != kNone) d.in[2] = 9;
   }
   return d;
 }

@@ -56,7 +56,7 @@ Shared emit_shared(Assembler& a) {
 void Emitter::call_pou(const Call& c) {
   a_.load(kRsi, CONTEXT(pous), 8);
   Address callee = Registers::at(kRsi, offsetof(PouEntry, machine));
-  if (c.kind == CallKind::kBody) {
+  if (c.kind == CallKind::kBody || c.kind == CallKind::kVirtual) {
     a_.move(kR8, Registers::kPouNumber);
     a_.shift(Shift::kShl, kR8, 5, 8);
     callee.index = kR8;

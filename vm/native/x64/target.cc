@@ -50,6 +50,7 @@ Demands X64Target::demands(const Function& f, const Node& node) const {
       d.clobbers_all = true;
       if (node.in[0] != kNone) d.in[0] = 0;
       if (node.in[1] != kNone) d.in[1] = 2;
+      if (node.in[2] != kNone) d.in[2] = 4;
       break;
     case Op::kNative:
       for (uint32_t i = 0; i < 4; ++i) {
