@@ -89,6 +89,7 @@ void Facts::find_bodies(const BodyOf& body_of) {
     const bool of_instance =
         op == Opcode::CALL_INST || op == Opcode::CALL_INST_AT || op == Opcode::CALL_REF;
     if (of_instance && recursive_bodies()) continue;
+    if (op == Opcode::CALL_VIRTUAL && recursive_methods()) continue;
     if (op == Opcode::CALL_METHOD_REF && kinds_called(i) == nullptr) continue;
     found.clear();
     if (!find_body(body_of, i, found)) continue;
