@@ -47,9 +47,11 @@ class Program;
 // The variable that a handle was found in last, by the instruction that used it: so loops over a
 // buffer look it up once. It holds until the generation or what is exposed is another one.
 struct KnownReach {
+  // In this order they are the handle of its first byte, from which machine code takes the distance
+  // of others: it is less than the size inside of the variable alone.
+  uint32_t begin = 0;    // offset
   uint32_t segment = 0;  // the upper half of the handles that are inside; 0: none
-  uint32_t begin = 0;    // offsets
-  uint32_t size = 0;
+  uint64_t size = 0;
   uint32_t home = 0;  // data offset of offset 0; 0: there are slots inside
 };
 inline constexpr uint32_t kKnownReaches = 16;
@@ -104,6 +106,12 @@ struct Context {
   bool trapped = false;               // since it began: `trap` or `caught` is not empty
   KnownReach reaches[kKnownReaches];  // by the place of the instruction
 };
+
+// What machine code asks where the variable at reaches[site] is another one. The data offset of
+// `size_and_bytes >> 32` bytes that the handle names, moved by the lower half; 0: they are not
+// there. And the handle moved by the lower half of `bytes`.
+uint64_t resolve_for_code(Context* ctx, uint64_t handle, uint64_t size_and_bytes, uint64_t site);
+uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t site);
 
 #define STC_HANDLER_ARGS                                                \
   [[maybe_unused]] const ir::Unit *pc, [[maybe_unused]] uint8_t *frame, \

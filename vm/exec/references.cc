@@ -98,7 +98,7 @@ KnownReach known_reach(const Home& home, uint64_t handle) {
   const bool slots = home.reach.has_slots && home.slot_count != 0;
   const auto whole = static_cast<uint32_t>(ir::with_away(0, ir::kWhole) >> 32);
   const uint32_t mark = ir::handle_away(handle) == ir::kWhole ? whole : 0;
-  return {ir::handle_segment(handle) | mark, home.reach.begin, home.reach.size(),
+  return {home.reach.begin, ir::handle_segment(handle) | mark, home.reach.size(),
           slots ? 0 : home.data};
 }
 
@@ -145,7 +145,7 @@ uint64_t move_handle(const Context& ctx, uint64_t handle, uint32_t bytes, KnownR
   if (const AreaEntry* const area = area_inside(ctx, handle)) {
     const ir::Reach reach = ir::reach_at(reaches_of(ctx, *area), from);
     if (reach.holds(from) && reach.holds(from + bytes)) {
-      known = {area->segment, reach.begin, reach.size(), reach.has_slots ? 0 : area->data};
+      known = {reach.begin, area->segment, reach.size(), reach.has_slots ? 0 : area->data};
       return ir::move_offset(handle, bytes);
     }
   }
@@ -161,7 +161,7 @@ uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, Known
     const uint32_t place = ir::handle_offset(handle);
     const ir::Reach reach = ir::reach_at(reaches_of(ctx, *area), place);
     if (reach.covers(place, size) && !reach.has_slots) {
-      known = {area->segment, reach.begin, reach.size(), area->data};
+      known = {reach.begin, area->segment, reach.size(), area->data};
       return area->data + place;
     }
   }
@@ -171,6 +171,17 @@ uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, Known
   if (touches_slot(*home, offset, uint64_t{offset} + size)) return 0;
   known = known_reach(*home, handle);
   return home->data + offset;
+}
+
+uint64_t resolve_for_code(Context* ctx, uint64_t handle, uint64_t size_and_bytes, uint64_t site) {
+  KnownReach& known = ctx->reaches[site];
+  const auto bytes = static_cast<uint32_t>(size_and_bytes);
+  if (bytes != 0) handle = move_handle(*ctx, handle, bytes, known);
+  return resolve_bytes(*ctx, handle, static_cast<uint32_t>(size_and_bytes >> 32), known);
+}
+
+uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t site) {
+  return move_handle(*ctx, handle, static_cast<uint32_t>(bytes), ctx->reaches[site]);
 }
 
 bool has_left(const Context& ctx, uint64_t handle, uint32_t size) {

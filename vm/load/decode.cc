@@ -19,23 +19,6 @@ void prepare_resolve(const ir::Image& image, const std::vector<bool>& has_slots,
   extension = ir::Unit::extension(exact ? type.index : image.layouts[type].size, extension.y());
 }
 
-// Types whose values hold ID or in-out slots; instance types themselves included.
-std::vector<bool> types_with_slots(const ir::Image& image) {
-  std::vector<bool> with(image.types.size());
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (uint32_t i = 0; i < with.size(); ++i) {
-      const ir::Type& type = image.types[ir::TypeId(i)];
-      bool found = image.types.is_instance(ir::TypeId(i)) ||
-                   (type.kind == ir::Kind::kArray && with[type.base.index]);
-      for (const ir::Member& member : type.members) found = found || with[member.type.index];
-      changed |= found && !with[i];
-      if (found) with[i] = true;
-    }
-  }
-  return with;
-}
-
 // Handler numbers into the op fields; the bytes of a COPY in the place of its type.
 void prepare_code(const ir::Image& image, const std::vector<bool>& has_slots,
                   std::vector<ir::Unit>& code) {
@@ -69,6 +52,22 @@ bool is_fused(const TierOptions& tier) {
 constexpr uint32_t kLeastLogic = 16;
 
 }  // namespace
+
+std::vector<bool> types_with_slots(const ir::Image& image) {
+  std::vector<bool> with(image.types.size());
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (uint32_t i = 0; i < with.size(); ++i) {
+      const ir::Type& type = image.types[ir::TypeId(i)];
+      bool found = image.types.is_instance(ir::TypeId(i)) ||
+                   (type.kind == ir::Kind::kArray && with[type.base.index]);
+      for (const ir::Member& member : type.members) found = found || with[member.type.index];
+      changed |= found && !with[i];
+      if (found) with[i] = true;
+    }
+  }
+  return with;
+}
 
 Decoder::Decoder(const ir::Image& image, bool clean_bools, const TierOptions& tier)
     : image_(image),

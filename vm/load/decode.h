@@ -10,6 +10,9 @@
 
 namespace vm {
 
+// Types whose values hold ID or in-out slots; instance types themselves included.
+std::vector<bool> types_with_slots(const ir::Image& image);
+
 // Decodes one image, which is verified and borrowed.
 class Decoder {
  public:

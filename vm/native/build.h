@@ -54,10 +54,15 @@ class Builder {
   // build_ops.cc
   void unit(uint32_t number);
   void arithmetic(const Recipe& recipe);
-  void divide(const Recipe& recipe);
-  bool divide_by_constant(const Recipe& recipe, Val left, uint64_t divisor);
-  Val quotient_by_constant(bool is_signed, uint8_t width, Val left, uint64_t divisor);
   void shift(const Recipe& recipe);
+  // build_division.cc
+  void divide(const Recipe& recipe);
+  void divide_by_constant(const Recipe& recipe, Val left, uint64_t divisor);
+  Val quotient_by_constant(bool is_signed, uint8_t width, Val left, uint64_t divisor);
+  Val quotient_of_32_bits(bool is_signed, Val left, uint64_t divisor);
+  Val unsigned_quotient(Val left, unsigned bits, uint64_t divisor);
+  Val signed_quotient(Val left, uint64_t divisor);
+  // build_ops.cc
   void convert(const Recipe& recipe);
   void to_integer(const Recipe& recipe);
   void check_range(const Recipe& recipe);
@@ -86,9 +91,12 @@ class Builder {
   Val of_context(size_t offset, uint8_t width);
   Val of_table(Val table, Val row, size_t offset, uint8_t width);
   Object object_of(Val handle);
+  Val area_of(const Object& object, bool may_be_own);
   void leave_unless_one_of(const std::vector<ir::TypeId>& kinds, Val type);
   Val target_of(Val type, uint32_t prototype);
   void call_reference();
+  void resolve();
+  void move_handle();
 
   // build_memory.cc
   struct Piece {
@@ -160,7 +168,8 @@ class Builder {
   struct {
     Val value = kNone;
     uint8_t width = 0;
-  } switched_;                      // what the forks of the last SWITCH ask
+  } switched_;  // what the forks of the last SWITCH ask
+  uint32_t handle_sites_ = 0;
   uint32_t version_ = 0;            // of memory that no variable names
   uint32_t epoch_ = 0;              // values of earlier epochs are reached through variables only
   std::vector<uint32_t> epoch_of_;  // by value

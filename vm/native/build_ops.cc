@@ -1,17 +1,10 @@
 // One instruction after the other.
-#include <bit>
-
 #include "vm/native/build.h"
 #include "vm/native/ranges.h"
 
 namespace vm::native {
 
 using ir::Opcode;
-
-namespace {
-
-
-}  // namespace
 
 void Builder::unit(uint32_t number) {
   unit_ = number;
@@ -166,86 +159,6 @@ void Builder::arithmetic(const Recipe& recipe) {
       break;
   }
   write_a(value_of(made, recipe.floating));
-}
-
-// Towards zero: a sum that rounds negative numbers up, then a shift.
-Val Builder::quotient_by_constant(bool is_signed, uint8_t width, Val left, uint64_t divisor) {
-  const unsigned bits_ = 8u * width;
-  if (std::has_single_bit(divisor)) {
-    const unsigned k = static_cast<unsigned>(std::countr_zero(divisor));
-    if (!is_signed) return int_op(Op::kShr, width, left, constant(k, 4, false));
-    const Val sign = int_op(Op::kSar, width, left, constant(bits_ - 1, 4, false));
-    const Val rest = int_op(Op::kShr, width, sign, constant(bits_ - k, 4, false));
-    const Val sum = int_op(Op::kAdd, width, left, rest);
-    return int_op(Op::kSar, width, sum, constant(k, 4, false));
-  }
-  if (width != 4) return kNone;
-  // A multiplication by the reciprocal, rounded up, of 32 bits and a few more.
-  if (is_signed) {
-    unsigned k = 0;
-    while ((uint64_t{1} << k) < divisor) ++k;
-    const uint64_t magic = (uint64_t{1} << (31 + k)) / divisor + 1;
-    const Val wide = extended(left, 4, true);
-    const Val product = int_op(Op::kMul, 8, wide, constant(magic, 8, false));
-    const Val high = int_op(Op::kSar, 8, product, constant(31 + k, 4, false));
-    const Val sign = int_op(Op::kSar, 8, wide, constant(63, 4, false));
-    return extended(int_op(Op::kSub, 8, high, sign), 4, false);
-  }
-  for (unsigned k = 0; k < 32; ++k) {
-    // Exact for every 32-bit number when the reciprocal's error is small enough.
-    const unsigned __int128 power = static_cast<unsigned __int128>(1) << (32 + k);
-    const uint64_t magic = static_cast<uint64_t>((power + divisor - 1) / divisor);
-    if (magic >> 32 != 0) break;
-    const uint64_t error =
-        static_cast<uint64_t>(static_cast<unsigned __int128>(magic) * divisor - power);
-    if (error > (uint64_t{1} << k)) continue;
-    const Val wide = extended(left, 4, false);
-    const Val product = int_op(Op::kMul, 8, wide, constant(magic, 8, false));
-    return extended(int_op(Op::kShr, 8, product, constant(32 + k, 4, false)), 4, false);
-  }
-  return kNone;
-}
-
-bool Builder::divide_by_constant(const Recipe& recipe, Val left, uint64_t divisor) {
-  const bool remainder = recipe.op == Op::kModS || recipe.op == Op::kModU;
-  const uint64_t sign_bit = uint64_t{1} << (8 * recipe.width - 1);
-  if (divisor < 2 || (recipe.is_signed && (divisor & sign_bit) != 0)) return false;
-  const uint8_t width = recipe.width;
-  if (remainder && !recipe.is_signed && std::has_single_bit(divisor)) {
-    write_a(int_op(Op::kAnd, width, left, constant(divisor - 1, width, false)));
-    return true;
-  }
-  Val operand = left;
-  uint8_t at = width;
-  if (width < 4) {
-    operand = extended(left, width, recipe.is_signed);
-    at = 4;
-  }
-  const Val quotient = quotient_by_constant(recipe.is_signed, at, operand, divisor);
-  if (quotient == kNone) return false;
-  if (!remainder) {
-    write_a(quotient);
-    return true;
-  }
-  const Val product = int_op(Op::kMul, at, quotient, constant(divisor, at, false));
-  write_a(int_op(Op::kSub, at, operand, product));
-  return true;
-}
-
-void Builder::divide(const Recipe& recipe) {
-  Val left = read_b();
-  Val right = read_c();
-  if (is_constant(right) && divide_by_constant(recipe, left, bits(right) & mask(recipe.width))) {
-    return;
-  }
-  exit_if(Cond::kEq, recipe.width, right, zero());
-  uint8_t width = recipe.width;
-  if (width < 4) {
-    left = extended(left, width, recipe.is_signed);
-    right = extended(right, width, recipe.is_signed);
-    width = 4;
-  }
-  write_a(int_op(recipe.op, width, left, right));
 }
 
 void Builder::shift(const Recipe& recipe) {

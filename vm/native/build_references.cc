@@ -2,6 +2,7 @@
 // in tables of the generation, so nothing of it is remembered here. A change brings other tables.
 #include "vm/exec/context.h"
 #include "vm/native/build.h"
+#include "vm/native/host.h"
 
 namespace vm::native {
 
@@ -35,6 +36,16 @@ Builder::Object Builder::object_of(Val handle) {
   exit_if(Cond::kNe, 4, of_table(areas, out.row, offsetof(AreaEntry, segment), 4), segment);
   out.type = of_table(areas, out.row, offsetof(AreaEntry, type), 4);
   return out;
+}
+
+// `may_be_own`: it may be the instance that the POU runs for.
+Val Builder::area_of(const Object& object, bool may_be_own) {
+  Node made = node(Op::kLoad, 4);
+  const Val areas = of_context(offsetof(Context, areas), 8);
+  made.mem = {MemBase::kPointer, 1, object.row, offsetof(AreaEntry, data), areas};
+  made.immutable = true;
+  made.imm = may_be_own ? 0 : kOtherInstance;
+  return value_of(made, false);
 }
 
 void Builder::leave_unless_one_of(const std::vector<ir::TypeId>& kinds, Val type) {
@@ -88,9 +99,64 @@ void Builder::call_reference() {
   } else {
     made.in[2] = target_of(object.type, x_.x());
   }
-  const Val areas = of_context(offsetof(Context, areas), 8);
-  made.in[1] = of_table(areas, object.row, offsetof(AreaEntry, data), 4);
+  made.in[1] = area_of(object, kinds == nullptr || facts_.may_be_own(kinds->front()));
   call(kind, pou, made);
+}
+
+namespace {
+
+constexpr uint64_t kMostBytes = uint64_t{1} << 30;  // that a displacement takes
+
+}  // namespace
+
+// Values with slots inside are seldom, and the interpreter knows where they may lie; but an
+// instance is found as for a call.
+void Builder::resolve() {
+  const ir::TypeId type = ir::region_of_field(x_.x()).type;
+  if (facts_.resolves_instance(unit_)) {
+    const Object object = object_of(read_b());
+    leave_unless_one_of(*facts_.kinds_of(type), object.type);
+    return write_a(area_of(object, facts_.may_be_own(type)));
+  }
+  const uint64_t size = facts_.image().layouts[type].size;
+  const uint64_t bytes = x_.y();
+  const bool fits = size != 0 && size < kMostBytes && bytes < kMostBytes;
+  if (!host::kFollowsHandles || !fits || facts_.has_slots(type)) return helper();
+  Node made = node(Op::kResolve, 4, read_b());
+  made.imm = size << 32 | bytes;
+  made.site = static_cast<uint8_t>(handle_sites_++ % kKnownReaches);
+  const size_t before = f_.nodes.size();
+  const Val found = value_of(made, false);
+  if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
+  write_a(found);
+}
+
+// By so many bytes, as a constant, or to an element.
+void Builder::move_handle() {
+  if (!host::kFollowsHandles) return helper();
+  const Opcode op = u_.opcode();
+  Val handle = kNone;
+  Val bytes = kNone;
+  if (op == Opcode::HANDLE_ADD) {
+    handle = read_b();
+    bytes = read_c();
+  } else if (op == Opcode::HANDLE_STEP) {
+    handle = read_b();
+    bytes = constant(x_.x(), 8, false);
+  } else {
+    const ir::LinkedBound& bound = facts_.image().bounds[x_.x()];
+    const Val index = read_b();
+    if (op == Opcode::HANDLE_INDEX_U64) exit_if(Cond::kLtS, 8, index, zero());
+    const Val low = constant(static_cast<uint64_t>(bound.low), 8, false);
+    const Val steps = int_op(Op::kSub, 8, index, low);
+    exit_if(Cond::kGeU, 8, steps, constant(bound.count, 8, false));
+    const Val way = int_op(Op::kMul, 8, steps, constant(bound.stride, 8, false));
+    handle = read_c();
+    bytes = int_op(Op::kAdd, 8, way, constant(x_.y(), 8, false));
+  }
+  Node made = node(Op::kMoveHandle, 8, handle, bytes);
+  made.site = static_cast<uint8_t>(handle_sites_++ % kKnownReaches);
+  write_a(value_of(made, false));
 }
 
 }  // namespace vm::native

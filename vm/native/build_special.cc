@@ -13,7 +13,9 @@ constexpr size_t kMostDirty = 16;  // over a body: every exit of it stores them
 bool only_computes(Opcode op) {
   return op == Opcode::LEA || op == Opcode::LEA_AT || op == Opcode::LD_REF ||
          (op >= Opcode::STR && op <= Opcode::WSTR_AT) || op == Opcode::SIZE_OF ||
-         op == Opcode::INST || op == Opcode::INST_AT || op == Opcode::TASK_TIME;
+         op == Opcode::INST || op == Opcode::INST_AT || op == Opcode::TASK_TIME ||
+         op == Opcode::HANDLE_ADD || op == Opcode::HANDLE_STEP || op == Opcode::RESOLVE ||
+         op == Opcode::HANDLE_INDEX_I64 || op == Opcode::HANDLE_INDEX_U64;
 }
 
 }  // namespace
@@ -22,6 +24,13 @@ void Builder::special() {
   const Opcode op = u_.opcode();
   if (!only_computes(op) && !facts_.has_body(unit_)) store_deferred();
   switch (op) {
+    case Opcode::RESOLVE:
+      return resolve();
+    case Opcode::HANDLE_ADD:
+    case Opcode::HANDLE_STEP:
+    case Opcode::HANDLE_INDEX_I64:
+    case Opcode::HANDLE_INDEX_U64:
+      return move_handle();
     case Opcode::LEA:
       if (u_.base_b() == ir::Base::kConst) return write_a(pool_address(x_.x()));
       return write_a(address_of(place(u_.base_b(), x_.x())));

@@ -17,9 +17,11 @@ bool names_instance(ir::Opcode op) {
 }
 
 // What machine code compares the type of an instance with, and the body that it runs.
-void add_kinds(const ImageFacts& common, ir::TypeId type, std::vector<uint64_t>& out) {
+void add_kinds(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+               ir::TypeId type, std::vector<uint64_t>& out) {
   const std::vector<ir::TypeId>* const kinds = common.kinds_of(type);
   out.push_back(kinds == nullptr ? 0 : kinds->size());
+  out.push_back(may_be_own(image, pou, type) ? 1 : 0);
   if (kinds == nullptr) return;
   for (const ir::TypeId kind : *kinds) {
     out.push_back(uint64_t{kind.index} << 32 | common.body_of[kind.index]);
@@ -73,7 +75,8 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
       out.insert(out.end(), {callee, called.recursion_depth,
                              may_share_instance(image, pou, called) ? uint64_t{1} : 0});
     }
-    if (u.opcode() == ir::Opcode::CALL_REF) add_kinds(common, ir::region_of_field(x.x()).type, out);
+    if (u.opcode() == ir::Opcode::CALL_REF)
+      add_kinds(image, common, pou, ir::region_of_field(x.x()).type, out);
     if (u.opcode() == ir::Opcode::CALL_VIRTUAL) {
       for (const ir::LinkedOverride& one : common.targets_of(x.x())) {
         const ir::LinkedPou& target = image.pous[one.target];
@@ -83,10 +86,15 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
       out.push_back(kNone);
     }
     if (u.opcode() == ir::Opcode::CALL_METHOD_REF) {
-      add_kinds(common, image.pous[x.x()].self, out);
+      add_kinds(image, common, pou, image.pous[x.x()].self, out);
     }
     if (u.opcode() == ir::Opcode::COPY) {
       out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.x())));
+    }
+    if (u.opcode() == ir::Opcode::RESOLVE) {
+      const ir::TypeId type = ir::region_of_field(x.x()).type;
+      out.push_back(uint64_t{image.layouts[type].size} << 1 | (common.has_slots(type) ? 1 : 0));
+      add_kinds(image, common, pou, type, out);
     }
     if (u.opcode() == ir::Opcode::LEA) {
       out.push_back(ir::region_size(image.types, image.layouts, ir::region_of_field(x.y())));

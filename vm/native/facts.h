@@ -90,6 +90,8 @@ struct ImageFacts {
   const std::vector<ir::TypeId>* kinds_of(ir::TypeId type) const;
   // What a call of the prototype runs, by type; none: too many.
   std::vector<ir::LinkedOverride> targets_of(uint32_t prototype) const;
+  // Do values of the type hold IDs or in-outs, or is it an instance's?
+  bool has_slots(ir::TypeId type) const;
   bool recursive_bodies = false;   // does any block call itself?
   bool recursive_methods = false;  // or any method?
   bool clean_bools = false;        // are all BOOLs in memory 0 or 1?
@@ -101,6 +103,7 @@ struct ImageFacts {
   mutable ByKey<std::vector<Children>> children_;    // by type: as far as asked for
   std::vector<std::pair<ir::TypeId, ir::TypeId>> extensions_;  // {base, what extends it}, sorted
   std::vector<uint32_t> by_prototype_;                         // rows of Image::overrides, sorted
+  mutable std::vector<bool> with_slots_;                       // by type, when something has asked
   mutable ByKey<std::vector<ir::TypeId>> kinds_;               // by type: as far as asked for
 };
 // The frame slot that covers the offset, or the last one in front of it; kNone: there is none.
@@ -111,6 +114,9 @@ uint32_t called_body(const ir::Image& image, const ImageFacts& common, const ir:
 
 // May code of both be executed for one instance?
 bool may_share_instance(const ir::Image& image, const ir::LinkedPou& a, const ir::LinkedPou& b);
+
+// May an instance of the type, or of what extends it, be the one that the POU runs for?
+bool may_be_own(const ir::Image& image, const ir::LinkedPou& pou, ir::TypeId type);
 
 // What a body in the place of its call may do to memory that the caller names.
 struct Effects {
@@ -219,6 +225,14 @@ class Facts {
   bool recursive_methods() const { return common_->recursive_methods; }
   // What the reference of a call may name (ImageFacts::kinds_of); null: nobody knows.
   const std::vector<ir::TypeId>* kinds_called(uint32_t unit) const;
+  bool has_slots(ir::TypeId type) const { return common_->has_slots(type); }
+  const std::vector<ir::TypeId>* kinds_of(ir::TypeId type) const { return common_->kinds_of(type); }
+  // Does the RESOLVE give the area of an instance of one of kinds_of() the type, from its
+  // beginning?
+  bool resolves_instance(uint32_t unit) const {
+    return extension(unit).y() == 0 && kinds_of(ir::region_of_field(extension(unit).x()).type);
+  }
+  bool may_be_own(ir::TypeId type) const { return native::may_be_own(*image_, *pou_, type); }
   bool clean_bools() const { return common_->clean_bools; }
   void successors(Block block, Block out[2], uint32_t& count) const;
 

@@ -84,7 +84,8 @@ class Forwarder {
     return mem;
   }
 
-  Root instance(Val area) const {
+  // `inside`: in an instance inside of that one, which may be this one.
+  Root instance(Val area, bool inside) const {
     Root root;
     const Node* const made = maker(area);
     if (made == nullptr) return root;
@@ -94,7 +95,10 @@ class Forwarder {
     if (made->op != Op::kInstance && !of_handle) return root;
     root.kind = Root::kInstance;
     root.area = area;
-    if (of_handle) return root;
+    if (of_handle) {
+      root.part = made->imm == kOtherInstance && !inside;
+      return root;
+    }
     const Node* const id = maker(real(made->in[0]));
     root.part = id != nullptr && id->op == Op::kLoad && id->mem.base == MemBase::kSelf;
     return root;
@@ -109,11 +113,11 @@ class Forwarder {
         const Node* const enter = maker(mem.pointer);
         if (enter == nullptr || enter->op != Op::kEnter) return {};
         if (enter->mem.inside) return {Root::kInside, kNone, false};
-        return instance(real(enter->in[1]));
+        return instance(real(enter->in[1]), mem.inside);
       }
       case MemBase::kData:
         if (mem.index == kNone) return {Root::kGlobals, kNone, false};
-        return mem.scale == 1 ? instance(mem.index) : Root();
+        return mem.scale == 1 ? instance(mem.index, mem.inside) : Root();
     }
     return {};
   }

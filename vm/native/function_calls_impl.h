@@ -38,6 +38,9 @@ void FunctionEmitter<Self, Registers>::node(const Step& step) {
     case Op::kModS:
     case Op::kModU:
       return self().divide(n, step);
+    case Op::kMulHighS:
+    case Op::kMulHighU:
+      return self().multiply_high(n, step);
     case Op::kAndNot:
     case Op::kOrNot:
       return self().bool_not(n, step);
@@ -58,6 +61,10 @@ void FunctionEmitter<Self, Registers>::node(const Step& step) {
     case Op::kSelect:
     case Op::kSelectCmp:
       return self().select(n, step);
+    case Op::kResolve:
+      return self().resolve(n, step);
+    case Op::kMoveHandle:
+      return self().move_handle(n, step);
     case Op::kExitIf:
       return self().exit_if(n, step, exit_label(n.exit));
     case Op::kInstance:

@@ -29,6 +29,8 @@ struct Shared {
   Label enter;      // uint64_t (const void* to, frame, self, data + 2 GiB, Context*)
   Label leave;      // everything but pc and POU is in its register
   Label interpret;  // entry of a POU without code: its number is in kPouNumber
+  // Calls resolve_for_code or move_for_code, and every register but the scratch stays what it is.
+  Label ask_for_handle = 0;
 };
 
 template <class Self, class Registers>

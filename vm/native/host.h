@@ -15,11 +15,13 @@ using arm64::Assembler;
 using arm64::emit_shared;
 using arm64::Emitter;
 using HostTarget = arm64::Arm64Target;
+inline constexpr bool kFollowsHandles = false;  // it leaves them to handlers
 #else
 using x64::Assembler;
 using x64::emit_shared;
 using x64::Emitter;
 using HostTarget = x64::X64Target;
+inline constexpr bool kFollowsHandles = true;
 #endif
 
 #if defined(__x86_64__) || defined(__aarch64__)

@@ -4,6 +4,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
+#include "vm/load/decode.h"
 #include "vm/native/facts.h"
 
 namespace vm::native {
@@ -160,6 +161,11 @@ const std::vector<ir::TypeId>* ImageFacts::kinds_of(ir::TypeId type) const {
   return all->size() > kMostKinds ? nullptr : all;
 }
 
+bool ImageFacts::has_slots(ir::TypeId type) const {
+  if (with_slots_.empty()) with_slots_ = types_with_slots(image_);
+  return with_slots_[type.index];
+}
+
 std::vector<ir::LinkedOverride> ImageFacts::targets_of(uint32_t prototype) const {
   const std::vector<ir::LinkedOverride>& rows = image_.overrides;
   auto at = std::lower_bound(by_prototype_.begin(), by_prototype_.end(), prototype,
@@ -177,6 +183,11 @@ const std::vector<ir::TypeId>* Facts::kinds_called(uint32_t i) const {
   const uint32_t x = extension(i).x();
   return common_->kinds_of(op == Opcode::CALL_REF ? ir::region_of_field(x).type
                                                   : image_->pous[x].self);
+}
+
+bool may_be_own(const ir::Image& image, const ir::LinkedPou& pou, ir::TypeId type) {
+  if (!pou.self.valid()) return false;
+  return image.types.is_a(pou.self, type) || image.types.is_a(type, pou.self);
 }
 
 const Children* Facts::children(uint64_t offset) const {

@@ -53,6 +53,8 @@ enum class Op : uint8_t {
   kDivU,
   kModS,
   kModU,
+  kMulHighS,  // the upper half of the product, width 8
+  kMulHighU,
   kNeg,
   kNot,
   kNotBool,
@@ -78,6 +80,10 @@ enum class Op : uint8_t {
   kFloatWidth,   // of `from` to `width`
   kBitsToFloat,  // an integer's bits
   kFloatToBits,
+  // data address of the bytes that the handle in[0] names, moved by the low half of imm, whose high
+  // half says how many; leaves at `exit` when they are not there
+  kResolve,
+  kMoveHandle,  // the handle in[0] moved by the low 4 bytes of in[1]
   // leaves at `exit` when in[0] cond in[1]
   kExitIf,
   // address of the instance whose ID is in[0]; leaves at `exit` when it is none
@@ -128,6 +134,9 @@ struct Mem {
   bool inside = false;
 };
 
+// Node::imm of a kLoad that gives the area of an instance which is surely not the POU's own.
+inline constexpr uint64_t kOtherInstance = 2;
+
 struct Node {
   Op op = Op::kConst;
   uint8_t width = 0;
@@ -137,6 +146,7 @@ struct Node {
   bool immutable = false;  // kLoad: no code writes there
   bool dead = false;
   uint8_t folded = 0xff;  // the operand that is what lies at `mem` (fold_loads)
+  uint8_t site = 0;       // kResolve, kMoveHandle: of Context::reaches
   Val result = kNone;
   Val in[4] = {kNone, kNone, kNone, kNone};
   uint64_t imm = 0;

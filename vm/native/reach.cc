@@ -73,6 +73,8 @@ Reach Facts::reach_of_unit(uint32_t i) const {
   } else if (op == Opcode::INST) {
     // What is inside of an instance is not the instance itself; a global one may be it.
     reach.own_instance = unit.base_b() != ir::Base::kSelf;
+  } else if (op == Opcode::RESOLVE && resolves_instance(i)) {
+    reach.own_instance = may_be_own(ir::region_of_field(more.x()).type);
   } else if (op == Opcode::INST_AT) {
     const Reach from = of_slot(unit.base_b(), unit.b);
     reach.own_instance = from.everything || from.own_instance || from.parts.empty();

@@ -175,7 +175,12 @@ void add_special(Table& table) {
                               ir::Opcode::CALL_VIRTUAL,
                               ir::Opcode::TASK_TIME,
                               ir::Opcode::ADVANCE_TIME,
-                              ir::Opcode::SIZE_OF}) {
+                              ir::Opcode::SIZE_OF,
+                              ir::Opcode::RESOLVE,
+                              ir::Opcode::HANDLE_ADD,
+                              ir::Opcode::HANDLE_STEP,
+                              ir::Opcode::HANDLE_INDEX_I64,
+                              ir::Opcode::HANDLE_INDEX_U64}) {
     table[static_cast<size_t>(op)].shape = Shape::kSpecial;
   }
 }

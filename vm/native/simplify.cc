@@ -138,8 +138,8 @@ class Simplifier {
 
   static bool is_pure(const Node& node) {
     return node.op != Op::kStore && node.op != Op::kExitIf && node.op != Op::kInstance &&
-           node.op != Op::kAdvanceTime && node.op != Op::kNative && node.op != Op::kHelper &&
-           node.op != Op::kCall && node.op != Op::kEnter;
+           node.op != Op::kResolve && node.op != Op::kAdvanceTime && node.op != Op::kNative &&
+           node.op != Op::kHelper && node.op != Op::kCall && node.op != Op::kEnter;
   }
 
   void drop_dead() {

@@ -73,6 +73,8 @@ const Form kForms[] = {
     // products, quotients, shifts
     {"mul w1, w2, w3", {0x1b037c41}, [](Assembler& a) { a.multiply(1, 2, 3, 4); }},
     {"mul x1, x2, x3", {0x9b037c41}, [](Assembler& a) { a.multiply(1, 2, 3, 8); }},
+    {"smulh x1, x2, x3", {0x9b437c41}, [](Assembler& a) { a.multiply_high(1, 2, 3, true); }},
+    {"umulh x1, x2, x3", {0x9bc37c41}, [](Assembler& a) { a.multiply_high(1, 2, 3, false); }},
     {"msub x1, x2, x3, x4", {0x9b039041}, [](Assembler& a) { a.multiply_subtract(1, 2, 3, 4, 8); }},
     {"msub w1, w2, w3, w4", {0x1b039041}, [](Assembler& a) { a.multiply_subtract(1, 2, 3, 4, 4); }},
     {"sdiv w1, w2, w3", {0x1ac30c41}, [](Assembler& a) { a.binary(Binary::kDivS, 1, 2, 3, 4); }},

@@ -120,6 +120,10 @@ uint64_t expected(const Operation& o, uint64_t a, uint64_t b) {
       return wraps ? 0 : static_cast<uint64_t>(s % t);
     case Op::kModU:
       return u % v;
+    case Op::kMulHighS:
+      return static_cast<uint64_t>(static_cast<__int128>(s) * t >> 64);
+    case Op::kMulHighU:
+      return static_cast<uint64_t>(static_cast<unsigned __int128>(u) * v >> 64);
     case Op::kNeg:
       return uint64_t{0} - u;
     case Op::kNot:
@@ -233,6 +237,10 @@ std::vector<Operation> all_operations() {
         out.push_back({Op::kRol, width, 0, Cond::kEq, true, n});
         out.push_back({Op::kRor, width, 0, Cond::kEq, true, n});
       }
+    }
+    if (width == 8) {
+      add({Op::kMulHighS, width, 0, Cond::kEq});
+      add({Op::kMulHighU, width, 0, Cond::kEq});
     }
     out.push_back({Op::kNeg, width});
     out.push_back({Op::kNot, width});

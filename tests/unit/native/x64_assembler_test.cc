@@ -79,6 +79,8 @@ const Form kForms[] = {
     {"shl r9d, 31", {0x41, 0xc1, 0xe1, 0x1f}, [](Assembler& a) { a.shift(Shift::kShl, kR9, 31, 4); }},
     {"sar rax, 63", {0x48, 0xc1, 0xf8, 0x3f}, [](Assembler& a) { a.shift(Shift::kSar, kRax, 63, 8); }},
     {"shr edx, cl", {0xd3, 0xea}, [](Assembler& a) { a.shift_cl(Shift::kShr, kRdx, 4); }},
+    {"mul r9", {0x49, 0xf7, 0xe1}, [](Assembler& a) { a.multiply_wide(kR9, false); }},
+    {"imul rcx", {0x48, 0xf7, 0xe9}, [](Assembler& a) { a.multiply_wide(kRcx, true); }},
     {"idiv ecx", {0xf7, 0xf9}, [](Assembler& a) { a.divide(kRcx, true, 4); }},
     {"div r9", {0x49, 0xf7, 0xf1}, [](Assembler& a) { a.divide(kR9, false, 8); }},
     {"cdq", {0x99}, [](Assembler& a) { a.sign_into_rdx(4); }},

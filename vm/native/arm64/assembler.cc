@@ -184,6 +184,9 @@ void Assembler::compare_extended(uint8_t a, uint8_t b, uint8_t from, bool is_sig
 void Assembler::multiply(uint8_t to, uint8_t a, uint8_t b, uint8_t width) {
   registers(0x1b000000 | uint32_t{kZero} << 10, to, a, b, width == 8);
 }
+void Assembler::multiply_high(uint8_t to, uint8_t a, uint8_t b, bool is_signed) {
+  registers((is_signed ? 0x1b400000 : 0x1bc00000) | uint32_t{kZero} << 10, to, a, b, true);
+}
 void Assembler::multiply_subtract(uint8_t to, uint8_t a, uint8_t b, uint8_t c, uint8_t width) {
   registers(0x1b008000 | uint32_t{c} << 10, to, a, b, width == 8);
 }

@@ -113,6 +113,7 @@ class Assembler : public CodeBuffer {
   // `b` is extended from 1 or 2 bytes.
   void compare_extended(uint8_t a, uint8_t b, uint8_t from, bool is_signed);
   void multiply(uint8_t to, uint8_t a, uint8_t b, uint8_t width);
+  void multiply_high(uint8_t to, uint8_t a, uint8_t b, bool is_signed);  // of 8 bytes
   void multiply_subtract(uint8_t to, uint8_t a, uint8_t b, uint8_t c, uint8_t width);  // c - a * b
   void binary(Binary op, uint8_t to, uint8_t a, uint8_t b, uint8_t width);
   void field(Field op, uint8_t to, uint8_t from, uint32_t immr, uint32_t imms, uint8_t width);

@@ -78,6 +78,11 @@ void Emitter::multiply(const Node& n, const Step& step) {
   a_.shift_left(to, a, power, width);
 }
 
+void Emitter::multiply_high(const Node& n, const Step& step) {
+  a_.multiply_high(integer_register(step.result), integer_register(step.in[0]),
+                   integer_register(step.in[1]), n.op == Op::kMulHighS);
+}
+
 // BOOL: a AND NOT b, a OR NOT b
 void Emitter::bool_not(const Node& n, const Step& step) {
   const uint8_t to = integer_register(step.result);

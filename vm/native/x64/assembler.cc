@@ -184,6 +184,9 @@ void Assembler::shift_cl(Shift op, uint8_t reg, uint8_t width) {
 void Assembler::divide(uint8_t by, bool is_signed, uint8_t width) {
   instruction(0, width == 8, {0xf7}, is_signed ? 7 : 6, Operand::of(by));
 }
+void Assembler::multiply_wide(uint8_t by, bool is_signed) {
+  instruction(0, true, {0xf7}, is_signed ? 5 : 4, Operand::of(by));
+}
 void Assembler::sign_into_rdx(uint8_t width) {
   if (width == 8) byte(0x48);
   byte(0x99);

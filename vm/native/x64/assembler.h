@@ -98,6 +98,7 @@ class Assembler : public CodeBuffer {
   void shift(Shift op, uint8_t reg, uint8_t count, uint8_t width);
   void shift_cl(Shift op, uint8_t reg, uint8_t width);
   void divide(uint8_t by, bool is_signed, uint8_t width);  // rdx:rax
+  void multiply_wide(uint8_t by, bool is_signed);          // rdx:rax := rax by it
   void sign_into_rdx(uint8_t width);
   void address(uint8_t to, const Address& at, uint8_t width);  // lea
   void address_of(uint8_t to, Label label);

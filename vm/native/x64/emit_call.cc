@@ -17,7 +17,7 @@ Address in_context(size_t offset) {
 }  // namespace
 
 Shared emit_shared(Assembler& a) {
-  Shared shared{a.label(), a.label(), a.label()};
+  Shared shared{a.label(), a.label(), a.label(), a.label()};
   const Label back = a.label();
   a.bind(shared.enter);
   for (const uint8_t reg : kSaved) a.push(reg);
@@ -50,6 +50,7 @@ Shared emit_shared(Assembler& a) {
   a.load(kRsp, in_context(offsetof(Context, native_stack)), 8);
   a.move_imm(kRax, 1);
   a.jump(back);
+  emit_ask_for_handle(a, shared.ask_for_handle);
   return shared;
 }
 

@@ -163,6 +163,11 @@ void Emitter::divide(const Node& n, const Step& step) {
   a_.bind(done);
 }
 
+// rdx:rax := rax by a register.
+void Emitter::multiply_high(const Node& n, const Step& step) {
+  a_.multiply_wide(integer_register(step.in[1]), n.op == Op::kMulHighS);
+}
+
 // Only the low byte is set: unless the rest is known, the machine waits for its old value.
 void Emitter::clear_for_set(uint8_t to, const Step& step) {
   const auto is_in = [&](const Place& place) {

@@ -65,6 +65,15 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
 
  private:
   friend class FunctionEmitter<Emitter, Registers>;
+  struct HandleStub {  // another variable than the one that is known
+    const Node* node;
+    Label label;
+    Label back;
+    Label exit;  // of kResolve
+    uint8_t handle;
+    Place bytes;  // of kMoveHandle
+    uint8_t result;
+  };
 
   // emitter.cc: what FunctionEmitter asks for
   void enter_frame();
@@ -85,7 +94,6 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
   void place_in_data(uint8_t to, uint8_t place);
   void data_memory(uint8_t to);
   void unit_address(uint8_t to, const ir::Unit* units, uint8_t number);
-  void own_stubs() {}
 
   // emit_nodes.cc
   void three(const Node& node, const Step& step);
@@ -94,6 +102,7 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
   void bool_not(const Node& node, const Step& step);
   void shift(const Node& node, const Step& step);
   void divide(const Node& node, const Step& step);
+  void multiply_high(const Node& node, const Step& step);
   void unary(const Node& node, const Step& step);
   void clear_for_set(uint8_t to, const Step& step);
   void compare(const Node& node, const Step& step);
@@ -107,6 +116,12 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
   void data_address(const Node& node, const Step& step);
   void instance(const Node& node, const Step& step);
   void pool(const Step& step);
+
+  // emit_handles.cc
+  void resolve(const Node& node, const Step& step);
+  void move_handle(const Node& node, const Step& step);
+  Address known(const Node& node, size_t member) const;
+  void own_stubs();
 
   // emit_float.cc
   void floating(const Node& node, const Step& step);
@@ -123,7 +138,9 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
   Address address(const Mem& mem, const Place& index, const Place& pointer = {}) const;
 
   bool has_and_not_;
+  std::vector<HandleStub> handle_stubs_;
 };
+void emit_ask_for_handle(Assembler& a, Label label);
 
 Condition condition_of(Cond cond);
 bool has_and_not();  // this machine: BMI1

@@ -36,6 +36,12 @@ Demands X64Target::demands(const Function& f, const Node& node) const {
       d.result = node.op == Op::kDivS || node.op == Op::kDivU ? 0 : 2;
       d.clobbers = 1u << 0 | 1u << 2;
       break;
+    case Op::kMulHighS:
+    case Op::kMulHighU:
+      d.in[0] = 0;
+      d.result = 2;
+      d.clobbers = 1u << 0 | 1u << 2;
+      break;
     case Op::kShl:
     case Op::kShr:
     case Op::kSar:
@@ -60,6 +66,10 @@ Demands X64Target::demands(const Function& f, const Node& node) const {
       d.clobbers = kLostAtCalls;
       d.clobbers_floats = ~0u;
       break;
+    case Op::kResolve:
+    case Op::kMoveHandle:
+      d.shares = 0;  // what it is computed of is asked for again
+      break;
     case Op::kHelper:
       d.clobbers_all = true;
       break;
@@ -76,6 +86,8 @@ bool X64Target::takes_constant(const Function& f, const Node& node, uint32_t ope
       return true;
     case Op::kStore:
       return operand == 0;
+    case Op::kMoveHandle:
+      return operand == 1;
     case Op::kAdd:
     case Op::kSub:
     case Op::kMul:
