@@ -46,7 +46,8 @@ std::string without_lines(const std::string& code) {
   return out;
 }
 
-// POUs, parts and initial values, in words.
+// POUs, parts and initial values, in words. Bare addresses are variables in the order in which code
+// names them first, which means nothing.
 std::string description(const ir::Image& image) {
   std::string out;
   for (const ir::Part& part : ir::parts_of(image)) {
@@ -61,7 +62,12 @@ std::string description(const ir::Image& image) {
   for (const std::string& pou : pous) out += pou;
   base::Bytes memory(image.data_capacity, 0);
   ir::read_initial(image, 0, memory);
-  return out + ir::state_text(image, memory);
+  std::istringstream state(ir::state_text(image, memory));
+  std::vector<std::string> values;
+  for (std::string line; std::getline(state, line);) values.push_back(line);
+  std::sort(values.begin(), values.end());
+  for (const std::string& line : values) out += line + "\n";
+  return out;
 }
 
 class Plant {
