@@ -84,6 +84,17 @@ bool Resident::can_follow() const {
   const size_t found = diagnostics_.warning_count() + diagnostics_.note_count();
   if (diagnostics_.all().size() != found) return false;  // too many to keep
   if (!sema_->program.migrations.empty()) return false;
+  // A body that names `x.pvalue` makes another interface of its function.
+  for (const PouInfo& info : sema_->declared.pous) {
+    if (info.library || info.decl == nullptr || info.decl->kind != PouKind::kFunction) continue;
+    const bool any = std::ranges::any_of(info.variables, [&](VarId id) {
+      const Variable& variable = sema_->declared.variables[id.index];
+      if (variable.section != VarSection::kInput || variable.decl == nullptr) return false;
+      const Spec& spec = parsed_->tree[variable.decl->spec];
+      return spec.kind == SpecKind::kNamed && ir::same_name(spec.name.text.substr(0, 3), "ANY");
+    });
+    if (any && sema_->options.dialect != Dialect::kIec) return false;
+  }
   // A body that leaves out a bare address may unshare its place.
   if (sema_->addresses.direct_shares) return false;
   const base::SourceMap& sources = parsed_->sources;

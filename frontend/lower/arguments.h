@@ -43,6 +43,7 @@ class Arguments : public BodyPhase {
                        std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);
   bool evaluate_in_out(Binding& binding);
+  void evaluate_any(Binding& binding);
   bool evaluate_open_array(Binding& binding, const OpenArray& open);
   bool evaluate_read_only(Binding& binding);
   bool may_call(ExprId expr);

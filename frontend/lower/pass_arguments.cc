@@ -13,6 +13,7 @@ namespace frontend {
 void Arguments::evaluate_input(Binding& binding, bool keep) {
   const Variable& parameter = resolve(binding.variable);
   if (!parameter.type.valid()) return;
+  if (parameter.takes_any) return evaluate_any(binding);
   ExprId id = binding.arg->value;
   if (types().is_scalar(parameter.type)) {
     binding.value = value(id, parameter.type);

@@ -41,6 +41,8 @@ struct Declarations {
 
   std::deque<PouInfo> pous;        // grows when library blocks are used
   std::deque<Variable> variables;  // by VarId
+  std::vector<Name> any_parts;     // any_inputs.cc: variables whose pvalue and so on is named
+  bool any_parts_known = false;
   bool complete = false;           // all interfaces are resolved; later ones at once
 
   // By name; types and POUs by their full name.

@@ -52,6 +52,7 @@ struct Variable {
   bool stamp = false;         // of start code: ir::Section::kStamp
   bool by_reference = false;  // in-out of a function block: a REFERENCE TO bound at each call
   bool each_call = false;     // an instance that each call makes anew (call_instances.cc)
+  bool takes_any = false;     // an input of type ANY, as a record (any_inputs.cc)
   bool runtime_init = false;  // the initialiser runs at each call
   Progress progress = Progress::kNew;
   Storage storage = Storage::kMember;

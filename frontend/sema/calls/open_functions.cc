@@ -19,8 +19,10 @@ constexpr std::string_view kGenericNames[] = {
     "ANY_CHAR", "ANY_STRING",     "ANY_DATE",      "ANY_DURATION", "ANY_DERIVED",
 };
 
+}  // namespace
+
 // The hierarchy of generic types (edition 3, figure 5).
-bool belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type) {
+bool OpenFunctions::belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type) {
   Traits t = traits_of(types, type);
   auto is = [group](std::string_view name) { return ir::same_name(group, name); };
   bool elementary = types.is_scalar(type) || is_string(types, type);
@@ -40,8 +42,6 @@ bool belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type
   return is("ANY_DATE") ? t.date : t.duration;
 }
 
-}  // namespace
-
 bool Collection::is_generic_name(std::string_view name) const {
   for (std::string_view generic : kGenericNames) {
     if (ir::same_name(name, generic)) return true;
@@ -54,7 +54,7 @@ bool Collection::is_open(const PouDecl& decl) const {
   for (const VarBlock& block : decl.blocks) {
     if (!is_parameter(block.section)) continue;
     for (const VarDecl& variable : block.vars) {
-      if (!variable.spec.valid()) continue;
+      if (!variable.spec.valid() || takes_any(variable, block.section, decl)) continue;
       const Spec& spec = sema_.tree[variable.spec];
       bool generic = spec.kind == SpecKind::kNamed && is_generic_name(spec.name.text);
       if (generic || (spec.kind == SpecKind::kArray && spec.open_bounds)) return true;
@@ -106,7 +106,8 @@ Callee OpenFunctions::bind_open(const Expr& call, uint32_t pou) {
   for (const Match& match : this->match(call, info)) {
     const Variable& parameter = sema_.declared.variables[match.parameter.index];
     const Spec& spec = sema_.tree[parameter.decl->spec];
-    bool named = spec.kind == SpecKind::kNamed && ask<Collection>().is_generic_name(spec.name.text);
+    bool named = spec.kind == SpecKind::kNamed && !parameter.takes_any &&
+                 ask<Collection>().is_generic_name(spec.name.text);
     if (named && !bind_generic(match, spec, generic)) return {};
     bool open = spec.kind == SpecKind::kArray && spec.open_bounds;
     if (open && !bind_array(match, spec, generic)) return {};
@@ -134,7 +135,8 @@ Callee OpenFunctions::bind_open(const Expr& call, uint32_t pou) {
                 "` is not connected");
       return {};
     }
-    bool named = spec.kind == SpecKind::kNamed && ask<Collection>().is_generic_name(spec.name.text);
+    bool named = spec.kind == SpecKind::kNamed && !parameter.takes_any &&
+                 ask<Collection>().is_generic_name(spec.name.text);
     if (!named || bound.contains(spec.name.text)) continue;
     error(DiagnosticCode::kBadGenericArgument, call.span,
           "no argument says what `" + std::string(spec.name.text) + "` is for `" +

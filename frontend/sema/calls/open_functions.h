@@ -13,6 +13,8 @@ class OpenFunctions : public Phase {
 
   Callee select_function(const Expr& call, uint32_t first);
   void check_overloads();
+  // Is the type one of ANY, ANY_NUM and so on?
+  static bool belongs(const ir::TypeTable& types, std::string_view group, ir::TypeId type);
 
  private:
   using ParameterTypes = std::vector<ir::TypeId>;  // by number in PouInfo::variables

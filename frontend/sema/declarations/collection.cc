@@ -308,6 +308,7 @@ void Collection::collect_variables(uint32_t pou, const VarBlock& block) {
       variable.non_retain = block.non_retain;
       variable.access = block.access;
       variable.pou = pou;
+      variable.takes_any = takes_any(decl, block.section, *info.decl);
       if (block.section == VarSection::kStatic) {
         add_static(variable, info);
         continue;

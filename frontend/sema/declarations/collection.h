@@ -21,6 +21,8 @@ class Collection : public Phase {
   bool use_library(std::string_view name);
   bool is_generic_name(std::string_view name) const;
   std::string static_list_name(const PouInfo& info) const;
+  // Is it an input of type ANY that the POU has as a record? (any_inputs.cc)
+  bool takes_any(const VarDecl& decl, VarSection section, const PouDecl& pou) const;
 
  private:
   // collection.cc
@@ -43,6 +45,8 @@ class Collection : public Phase {
   VarId add_static(Variable variable, PouInfo& info);
   VarId add_own_static(Variable variable, PouInfo& info);
   VarId add_instance_variable(Variable variable, PouInfo& method);
+  // any_inputs.cc
+  bool names_any_part(const VarDecl& decl, const PouDecl& pou) const;
   // call_instances.cc
   bool holds_block(SpecId spec, uint32_t depth);
   const NameMap<SpecId>& block_names();

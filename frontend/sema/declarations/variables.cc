@@ -56,6 +56,10 @@ void Variables::resolve_variable(VarId id) {
     variable.init = use.init;
     return;
   }
+  if (variable.takes_any) {
+    if (auto record = ask<Types>().find_type("AnyType")) variable.type = record->type;
+    return;
+  }
   const bool open = !variable.bound.valid() && is_open_array(variable);
   if (open) {
     variable.by_reference = true;
