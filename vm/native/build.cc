@@ -5,7 +5,9 @@
 namespace vm::native {
 namespace {
 
-constexpr size_t kMostHoisted = 24;  // loads in front of one loop
+constexpr size_t kMostHoisted = 24;     // loads in front of one loop
+constexpr size_t kManyVariables = 512;  // of one POU
+constexpr uint32_t kLately = 1024;      // units
 
 bool has(const std::vector<uint32_t>& sorted, uint32_t v) {
   return std::binary_search(sorted.begin(), sorted.end(), v);
@@ -23,6 +25,7 @@ Builder::Builder(const Facts& facts) : facts_(facts) {
   f_.blocks.resize(facts.blocks().size());
   ends_.resize(f_.blocks.size());
   users_.resize(f_.blocks.size(), 0);
+  named_at_.resize(f_.variables.size(), 0);
   parameters_.resize(f_.blocks.size());
   for (Block b = 0; b < f_.blocks.size(); ++b) {
     f_.blocks[b].unit = facts.blocks()[b].first;
@@ -159,6 +162,13 @@ Val Builder::merged(Block block, uint32_t variable) {
   return one;
 }
 
+// Of many variables only those that were named lately live on where ways meet, or the work at each
+// such block would grow with all of them.
+bool Builder::is_long_ago(uint32_t variable) const {
+  if (f_.variables.size() < kManyVariables) return false;
+  return named_at_[variable] + kLately < facts_.blocks()[block_].first;
+}
+
 void Builder::merge(Block block) {
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     bool all = true;
@@ -174,6 +184,7 @@ void Builder::merge(Block block) {
     const bool wanted = facts_.live_in(block, v) || (dirty != 0 && !f_.variables[v].slot);
     if (!wanted || !any) continue;
     if (!all && dirty == 0) continue;  // memory is right on every way
+    if (dirty == 0 && is_long_ago(v)) continue;
     const Val one = merged(block, v);
     if (one == kNone) {
       make_parameter(block, v);

@@ -42,6 +42,7 @@ class Builder {
   void enter_loop(Block block, uint32_t loop);
   void forget_shared();
   Val merged(Block block, uint32_t variable);
+  bool is_long_ago(uint32_t variable) const;
   Val at_end_of(Block pred, uint32_t variable);
   void make_parameter(Block block, uint32_t variable);
   void finish(Block block);
@@ -160,6 +161,7 @@ class Builder {
   std::vector<uint32_t> users_;                    // of ends_
   std::vector<std::vector<uint32_t>> parameters_;  // variables, by block
   State now_;
+  std::vector<uint32_t> named_at_;  // by variable: the last unit that read or wrote it
   Block block_ = 0;
   uint32_t unit_ = 0;
   ir::Unit u_;

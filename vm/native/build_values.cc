@@ -179,6 +179,7 @@ Val Builder::extended(Val v, uint8_t width, bool is_signed) {
 }
 
 Val Builder::read(uint32_t variable) {
+  named_at_[variable] = unit_;
   Val& value = now_.value[variable];
   if (value != kNone) return value;
   const Variable& v = f_.variables[variable];
@@ -211,6 +212,7 @@ Val Builder::read_b() { return read_field(u_.base_b(), u_.b, ir::opcode_row(u_.o
 Val Builder::read_c() { return read_field(u_.base_c(), u_.c, ir::opcode_row(u_.opcode()).c.cls); }
 
 void Builder::write(uint32_t variable, Val value) {
+  named_at_[variable] = unit_;
   const Variable& v = f_.variables[variable];
   now_.value[variable] = value;
   if (v.slot || (v.deferred && std::ranges::binary_search(deferred(), variable))) {

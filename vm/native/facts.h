@@ -101,10 +101,10 @@ struct ImageFacts {
   const ir::Image& image_;
   std::vector<std::vector<uint32_t>> instances_of_;  // live ones, by type and what it is made from
   mutable ByKey<std::vector<Children>> children_;    // by type: as far as asked for
-  std::vector<std::pair<ir::TypeId, ir::TypeId>> extensions_;  // {base, what extends it}, sorted
-  std::vector<uint32_t> by_prototype_;                         // rows of Image::overrides, sorted
-  mutable std::vector<bool> with_slots_;                       // by type, when something has asked
-  mutable ByKey<std::vector<ir::TypeId>> kinds_;               // by type: as far as asked for
+  std::vector<uint64_t> extensions_;              // base in the upper half, what extends it; sorted
+  std::vector<uint32_t> by_prototype_;            // rows of Image::overrides, sorted
+  mutable std::vector<bool> with_slots_;          // by type, when something has asked
+  mutable ByKey<std::vector<ir::TypeId>> kinds_;  // by type: as far as asked for
 };
 // The frame slot that covers the offset, or the last one in front of it; kNone: there is none.
 uint32_t slot_number(const ir::LinkedPou& pou, uint32_t offset);

@@ -80,13 +80,15 @@ ImageFacts::ImageFacts(const ir::Image& image, bool are_bools_clean,
   for (uint32_t i = 0; i < image.types.size(); ++i) {
     const ir::Type& type = image.types[ir::TypeId(i)];
     const bool extends = type.kind == ir::Kind::kFunctionBlock && type.base.valid();
-    if (extends) extensions_.push_back({type.base, ir::TypeId(i)});
+    if (extends) extensions_.push_back(uint64_t{type.base.index} << 32 | i);
   }
   std::sort(extensions_.begin(), extensions_.end());
   by_prototype_.resize(image.overrides.size());
   std::iota(by_prototype_.begin(), by_prototype_.end(), 0);
-  std::stable_sort(by_prototype_.begin(), by_prototype_.end(), [&](uint32_t a, uint32_t b) {
-    return image.overrides[a].prototype < image.overrides[b].prototype;
+  std::sort(by_prototype_.begin(), by_prototype_.end(), [&](uint32_t a, uint32_t b) {
+    const uint32_t x = image.overrides[a].prototype;
+    const uint32_t y = image.overrides[b].prototype;
+    return x != y ? x < y : a < b;
   });
   for (uint32_t p = 0; p < image.pous.size(); ++p) {
     const ir::LinkedPou& pou = image.pous[p];
@@ -149,10 +151,10 @@ const std::vector<ir::TypeId>* ImageFacts::kinds_of(ir::TypeId type) const {
   if (all == nullptr) {
     std::vector<ir::TypeId> found = {type};
     for (size_t next = 0; next < found.size() && found.size() <= kMostKinds; ++next) {
-      auto at = std::lower_bound(extensions_.begin(), extensions_.end(),
-                                 std::pair(found[next], ir::TypeId(0)));
-      for (; at != extensions_.end() && at->first == found[next]; ++at) {
-        found.push_back(at->second);
+      const uint64_t base = uint64_t{found[next].index} << 32;
+      auto at = std::lower_bound(extensions_.begin(), extensions_.end(), base);
+      for (; at != extensions_.end() && *at >> 32 == base >> 32; ++at) {
+        found.push_back(ir::TypeId(static_cast<uint32_t>(*at)));
         if (found.size() > kMostKinds) break;
       }
     }
