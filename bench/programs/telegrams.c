@@ -28,9 +28,8 @@ void telegrams_scan(int64_t now_ns) {
     fields++;
     if (field[0] == 'W') {
       total += (int32_t)strtol(field + 1, NULL, 10);
-    } else if (strcmp(field, "ALARM") == 0) {
-      alarms++;
     }
+    if (strcmp(field, "ALARM") == 0) alarms++;
     at = strchr(rest, ';');
   }
   if (strstr(telegram, "kg") != NULL) {
