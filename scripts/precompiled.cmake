@@ -53,6 +53,15 @@ function(stc_compile_small)
   endif()
 endfunction()
 
+# stc_compile_client(source...): likewise, for verbs of `stvm` that ask a controller. When memory runs
+# out in one, it ends; there is nothing to clean up. A controller goes on (base/memory_limit.h).
+function(stc_compile_client)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    stc_compile_with(client_headers "-Os;-fno-exceptions"
+                     HEADERS ${STC_COMMON_HEADERS} ${STC_THREAD_HEADERS} SOURCES ${ARGN})
+  endif()
+endfunction()
+
 # stc_compiler_only(TARGET): what is only in `stc`. Nothing there is caught or cleaned up when memory
 # runs out (tools/stc/memory_budget.h), and half of the optimiser's time is for a hundredth of the
 # speed (docs/TESTING.md, Build time).

@@ -76,12 +76,23 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_checks.cc
      ${CMAKE_SOURCE_DIR}/vm/load/code_slots.cc ${CMAKE_SOURCE_DIR}/vm/load/last_reads.cc
      ${CMAKE_SOURCE_DIR}/ir/types/natural_layout.cc ${CMAKE_SOURCE_DIR}/ir/types/constants.cc
-     ${CMAKE_SOURCE_DIR}/ir/types/member_finder.cc ${CMAKE_SOURCE_DIR}/ir/types/shared_bytes.cc
-     ${CMAKE_SOURCE_DIR}/online_change/apply/live_value.cc)
+     ${CMAKE_SOURCE_DIR}/ir/types/member_finder.cc ${CMAKE_SOURCE_DIR}/ir/types/shared_bytes.cc)
 # Where a native version spends its time while it is made.
 foreach(name facts allocate allocator_state uses forward simplify numbers)
   list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)
 endforeach()
+# Verbs that ask a controller, and what only these use.
+set(STC_CLIENT)
+foreach(name abort bench change change_follow controller_client doctor edits events fate_view get
+        journal json_value names package_making plot question remote_client restart set source
+        status stop switch_steps switch_text times_text trace undo undo_only unit_table values
+        waiting watch)
+  list(APPEND STC_CLIENT ${CMAKE_SOURCE_DIR}/tools/stvm/${name}.cc)
+endforeach()
+file(GLOB more_clients ${CMAKE_SOURCE_DIR}/tools/stvm/fleet*.cc
+     ${CMAKE_SOURCE_DIR}/tools/stvm/top*.cc ${CMAKE_SOURCE_DIR}/tools/stvm/timing*.cc)
+list(APPEND STC_CLIENT ${more_clients})
+list(REMOVE_ITEM STC_SMALL ${STC_CLIENT})
 # The back end of the other machine makes no code here.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   file(GLOB other_machine ${CMAKE_SOURCE_DIR}/vm/native/arm64/*.cc)

@@ -6,7 +6,7 @@
 set -eu
 source=$1
 build=$2
-most=3.4  # lines of headers for each line of a source; where it comes down, so does this
+most=3.25  # lines of headers for each line of a source; where it comes down, so does this
 
 # Only the build that people make first: others have other units.
 left_out() { echo "left out: $1"; exit 77; }
@@ -38,5 +38,5 @@ awk -v most="$most" '
       printf "more than %s lines of headers for each of a source: lighter includes, please\n", most
       exit 1
     }
-    if (alone > 5) { print "more than 5 units without precompiled headers"; exit 1 }
+    if (alone > 6) { print "more than 6 units without precompiled headers"; exit 1 }
   }' "$work/lines" "$work/deps"
