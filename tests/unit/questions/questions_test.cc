@@ -130,11 +130,13 @@ TEST(Questions, L01_AnswersForMembersOfBlocks) {
        "END_FUNCTION_BLOCK\n"
        "PROGRAM Main VAR a : Pump; r : Runs; b : BOOL; END_VAR\n"
        "a(speed := 5, done => b); r := a; b := r.go(1); b := a.go(2); a.rate := 7;\n"
+       "b := a.done;\n"
        "END_PROGRAM\n"});
   EXPECT_EQ(asked.messages(), "");
   EXPECT_EQ(asked.symbol("a(sp"), "variable Base.speed");
   EXPECT_EQ(asked.uses("VAR_INPUT sp"), "3:11d 4:59 5:33 5:52w 2/5:3w");
   EXPECT_EQ(asked.symbol("5, do"), "variable Base.done");
+  EXPECT_EQ(asked.symbol("b := a.d"), "variable Base.done");
   EXPECT_EQ(asked.symbol("b := r.g"), "method Runs.go");
   EXPECT_EQ(asked.symbol("b := a.g"), "method Base.go");
   EXPECT_EQ(asked.symbol("THIS^.g"), "method Base.go");
