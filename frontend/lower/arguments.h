@@ -39,6 +39,7 @@ class Arguments : public BodyPhase {
   ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
 
  private:
+  void hold(const PouInfo& callee);
   bool bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
                        std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);

@@ -1,5 +1,7 @@
 // Arguments on their way: evaluated from left to right, passed when all are known, outputs taken
 // after the call.
+#include <algorithm>
+
 #include "frontend/lower/arguments.h"
 #include "frontend/lower/method_code.h"
 #include "frontend/lower/places.h"
@@ -178,6 +180,7 @@ void Arguments::pass_defaults(const PouInfo& callee, const std::vector<Binding>&
     bool given = false;
     for (const Binding& binding : bindings) given = given || binding.variable == id;
     if (given) continue;
+    hold(callee);
     ir::Place parameter = argument_place(callee, variable);
     if (!types().is_scalar(variable.type)) {
       build_.init(parameter, variable.init);
@@ -188,6 +191,15 @@ void Arguments::pass_defaults(const PouInfo& callee, const std::vector<Binding>&
     ir::Scalar machine = scalar(variable.type);
     build_.store(parameter, machine, build_.constant(machine, bits));
   }
+}
+
+// The code here has a value of the callee's unit, so it goes with another version of it no more.
+void Arguments::hold(const PouInfo& callee) {
+  const ir::PouId unit =
+      callee.owner == kNoPou ? callee.id : sema_.declared.pous[callee.owner].id;
+  std::vector<ir::PouId>& held = body_.out.taken_in;
+  if (callee.library || !unit.valid() || unit == info_.id) return;
+  if (std::find(held.begin(), held.end(), unit) == held.end()) held.push_back(unit);
 }
 
 ir::Place Arguments::argument_place(const PouInfo& callee, const Variable& variable) const {

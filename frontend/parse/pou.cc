@@ -117,7 +117,14 @@ void Parser::parse_pou_header(PouDecl& pou) {
     accept(TokenKind::kColon);
     return;
   }
-  if (kind() != TokenKind::kColon) return;
+  if (kind() != TokenKind::kColon) {
+    // Nothing else is a name in front of variables.
+    if (!has_result(pou.kind) || !is_name(kind()) || !is_var_start(next_kind())) return;
+    note_only(Code::kExpected, current_->span(), "expected `:` in front of the type of the result",
+              "write `NAME : TYPE`");
+    pou.result = parse_spec();
+    return;
+  }
   const Token colon = take();
   SpecId result = parse_spec();
   if (has_result(pou.kind)) {

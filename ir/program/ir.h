@@ -248,7 +248,8 @@ struct Pou {
   std::vector<Block> blocks;   // blocks[0] is the entry and has no parameters
   std::vector<ChartMove> chart;  // of a body that is a chart, for later versions: no code uses it
   SourceContent content;
-  std::vector<PouId> taken_in;  // functions whose code the optimiser has put in here (E-04)
+  // Functions whose code the optimiser has put in here, and POUs whose defaults are passed (E-04).
+  std::vector<PouId> taken_in;
 };
 
 struct Task {

@@ -116,7 +116,7 @@ cat >open.st <<'ST'
 FUNCTION_BLOCK Open VAR x AT %I* : INT; y AT %Q* : BOOL; END_VAR y := x > 0; END_FUNCTION_BLOCK
 PROGRAM Main VAR o : Open; END_VAR o(); END_PROGRAM
 ST
-expect 1 stc check open.st
+expect 1 stc check --dialect iec open.st
 grep -qF 'VAR_CONFIG Main.o.x AT %IW0 : INT; END_VAR' err || fail "no address of an INT"
 grep -qF 'VAR_CONFIG Main.o.y AT %QX0.0 : BOOL; END_VAR' err || fail "no address of an output"
 

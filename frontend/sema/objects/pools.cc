@@ -114,17 +114,23 @@ void Pools::add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, u
 }
 
 void Pools::add_methods(ir::TypeId type) {
+  Seen seen;
+  add_methods(type, seen);
+}
+
+void Pools::add_methods(ir::TypeId type, Seen& seen) {
   const ir::TypeTable& types = sema_.program.types;
   if (!types.contains(type)) return;  // of a member whose type nobody knows
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
   if (!types.has_members(type)) return;
   const PouInfo* block = sema_.declared.pou_of(type);
   if (block != nullptr && block->reset != kNoPou) return;
+  if (!seen.insert(type.index).second) return;
   bool inner_leave = false;
   for (size_t i = 0; i < types[type].members.size(); ++i) {
     const ir::Member member = types[type].members[i];
     if (!ir::is_listed(member)) continue;
-    add_methods(member.type);
+    add_methods(member.type, seen);
     inner_leave = inner_leave || leaves(member.type);
   }
   if (block == nullptr || !block->id.valid()) return;
@@ -137,17 +143,22 @@ void Pools::add_methods(ir::TypeId type) {
 }
 
 bool Pools::leaves(ir::TypeId type) {
+  Seen seen;
+  return leaves(type, seen);
+}
+
+bool Pools::leaves(ir::TypeId type, Seen& seen) {
   const ir::TypeTable& types = sema_.program.types;
   if (!types.contains(type)) return false;
   while (types[type].kind == ir::Kind::kArray) type = types[type].base;
-  if (!types.has_members(type)) return false;
+  if (!types.has_members(type) || !seen.insert(type.index).second) return false;
   const PouInfo* block = sema_.declared.pou_of(type);
   if (block != nullptr && ask<Objects>().find_code(block->number, kFbExit).code.method != kNoPou) {
     return true;
   }
   const std::vector<ir::Member>& members = types[type].members;
   return std::any_of(members.begin(), members.end(), [&](const ir::Member& member) {
-    return ir::is_listed(member) && leaves(member.type);
+    return ir::is_listed(member) && leaves(member.type, seen);
   });
 }
 

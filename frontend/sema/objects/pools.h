@@ -4,6 +4,7 @@
 // element has an ID of its own, and a change that moves or grows a pool moves no element's handle.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,11 @@ class Pools : public Phase {
   bool holds_instance(ir::TypeId type) const;
 
  private:
+  // Types, each looked at once: there may be many ways to one, and one that contains itself is an
+  // error that does not end the look.
+  using Seen = std::set<uint32_t>;
+  void add_methods(ir::TypeId type, Seen& seen);
+  bool leaves(ir::TypeId type, Seen& seen);
   uint32_t count_of(const Attribute& attribute);
   void add(const Name& name, ir::TypeId type, uint32_t block, bool boxed, uint32_t count);
   void add_type(const TypeDecl& decl, const Attribute& attribute);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -46,6 +48,25 @@ std::string without_lines(const std::string& code) {
   return out;
 }
 
+// Constants by what they are: their places in the pool are those of a history.
+std::string with_constants(const std::string& code, const ir::Image& image) {
+  static const std::regex kConstant(R"((_(8|16|32|64)\b.*?)const\[(\d+)\])");
+  std::string out;
+  std::istringstream in(code);
+  for (std::string line; std::getline(in, line);) {
+    for (std::smatch found; std::regex_search(line, found, kConstant);) {
+      const size_t bytes = std::stoul(found[2]) / 8;
+      const size_t at = std::stoul(found[3]);
+      uint64_t value = 0;
+      if (at + bytes <= image.pool.size()) std::memcpy(&value, image.pool.data() + at, bytes);
+      line = std::string(found.prefix()) + found[1].str() + "constant " + std::to_string(value) +
+             std::string(found.suffix());
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
 // POUs, parts and initial values, in words. Bare addresses are variables in the order in which code
 // names them first, which means nothing.
 std::string description(const ir::Image& image) {
@@ -56,7 +77,9 @@ std::string description(const ir::Image& image) {
   }
   std::vector<std::string> pous;
   for (const ir::LinkedPou& pou : image.pous) {
-    if (!pou.name.empty()) pous.push_back(without_lines(ir::disassemble(image, pou)));
+    if (!pou.name.empty()) {
+      pous.push_back(with_constants(without_lines(ir::disassemble(image, pou)), image));
+    }
   }
   std::sort(pous.begin(), pous.end());
   for (const std::string& pou : pous) out += pou;
@@ -263,6 +286,27 @@ TEST(Merge, E10_RefusesCodeThatHoldsValuesAsTheyWere) {
   other.main = uses.main;
   const base::Result<ir::Image> fine = merged(plant, constant, other);
   EXPECT_TRUE(fine.ok()) << fine.error().text;
+}
+
+// The caller passes what its call leaves out, of a function and of a method.
+TEST(Merge, E10_RefusesACallerThatPassesAnotherDefault) {
+  Plant plant;
+  plant.own =
+      "FUNCTION Far : INT VAR_INPUT n : INT; more : INT := 7; END_VAR Far := n + more; "
+      "END_FUNCTION\nFUNCTION_BLOCK D METHOD Near : INT VAR_INPUT n : INT := 1; END_VAR "
+      "Near := n; END_METHOD END_FUNCTION_BLOCK\n";
+  plant.variables += " d : D; m : INT;";
+  plant.main += " m := Far(pair.u) + d.Near();";
+  Plant own = plant;
+  own.main += " pair.u := m;";
+  for (const char* const change : {"more : INT := 8", "n : INT := 2"}) {
+    Plant next = plant;
+    const std::string before = change[0] == 'm' ? "more : INT := 7" : "n : INT := 1";
+    next.own.replace(next.own.find(before), before.size(), change);
+    expect_refused(merged(plant, next, own), "the code of `Main` was made with another unit `" +
+                                                 std::string(change[0] == 'm' ? "Far" : "D"));
+    EXPECT_TRUE(merged(plant, next, plant).ok()) << "it goes along where it is the same";
+  }
 }
 
 TEST(Merge, E10_RefusesATypeThatIsAnotherOneThere) {
