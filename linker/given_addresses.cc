@@ -75,7 +75,8 @@ class AddressGiver {
     return depth < base::kMaxNesting && !image_.types.is_instance(id) && holds_open(id, depth + 1);
   }
   static bool is_open(const ir::Member& member) {
-    return member.section != ir::Section::kInOut && member.address.bit_offset == ir::kOpenAddress;
+    return member.section != ir::Section::kInOut && member.address.area != ir::DirectArea::kNone &&
+           member.address.bit_offset == ir::kOpenAddress;
   }
 
   void find_open() {
