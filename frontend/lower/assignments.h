@@ -21,8 +21,10 @@ class Assignments : public BodyPhase {
   ir::Place assignment_place(ExprId id, const Expr& expr);
 
  private:
+  void copy_parts(const ir::Place& to, const ir::Place& from, ir::TypeId id);
   void allow_set_or_reset(base::SourceSpan span);
   ir::ValueId set_or_reset(AssignOp op, ExprId left, ExprId right, base::SourceSpan span);
+  std::vector<ir::TypeId> copied_;  // what copy_held() is in the middle of
 };
 
 }  // namespace frontend

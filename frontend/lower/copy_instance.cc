@@ -1,5 +1,7 @@
 // `fb1 := fb2` (codesys, twincat): the values of all variables, those of inner instances too. What
 // a reference leads to is not copied, nor are in-outs, constants and what stands at an address.
+#include <algorithm>
+
 #include "frontend/lower/assignments.h"
 #include "frontend/lower/start_code.h"
 #include "frontend/sema/objects/pools.h"
@@ -11,6 +13,14 @@ void Assignments::copy_held(const ir::Place& to, const ir::Place& from, ir::Type
     return build_.store(to, scalar(id), build_.load(from, scalar(id)));
   }
   if (!ask<Pools>().holds_instance(id)) return build_.copy(to, from);
+  // A block that contains itself is an error, which has been told.
+  if (std::find(copied_.begin(), copied_.end(), id) != copied_.end()) return;
+  copied_.push_back(id);
+  copy_parts(to, from, id);
+  copied_.pop_back();
+}
+
+void Assignments::copy_parts(const ir::Place& to, const ir::Place& from, ir::TypeId id) {
   const ir::Type type = types()[id];
   if (type.kind == ir::Kind::kArray) {
     return ask<StartCode>().each_element(to, id, {}, [&](const ir::Place& one, ir::ConstId) {
