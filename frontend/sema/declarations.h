@@ -48,7 +48,7 @@ struct Declarations {
   // By name; types and POUs by their full name.
   NameMap<uint32_t> pou_names;
   NameMap<SpecId> types;
-  NameMap<SpecId> block_names;  // call_instances.cc: all blocks and types, by their last name
+  std::optional<NameMap<SpecId>> block_names;  // call_instances.cc: by their last names
   NameMap<VarId> globals;
   NameMap<GlobalList> lists;
   NameMap<std::vector<EnumRef>> literals;

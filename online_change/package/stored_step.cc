@@ -55,16 +55,14 @@ StoredStep stored(const UpdateStep& step) {
   out.count = step.count;
   out.to_stride = step.to_stride;
   out.fate = step.fate;
-  if (const auto* copied = step.as<CopiedValues>()) {
-    out.from = copied->from;
-    out.from_stride = copied->from_stride;
-  } else if (const auto* converted = step.as<ConvertedValues>()) {
-    out.from = converted->from;
-    out.from_stride = converted->from_stride;
+  if (const auto source = step.source()) {
+    out.from = source->from;
+    out.from_stride = source->from_stride;
+  }
+  if (const auto* converted = step.as<ConvertedValues>()) {
     out.old_type = converted->old_type;
     out.new_type = converted->new_type;
   } else if (const auto* entered = step.as<EnteredStep>()) {
-    out.from = entered->from;
     out.from_stride = entered->active;
   } else if (const auto* given = step.as<GivenValue>()) {
     out.from = given->call;

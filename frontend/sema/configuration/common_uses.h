@@ -47,6 +47,7 @@ class CommonUses : public Phase {
  private:
   void check_call_instances(const std::vector<ir::TypeId>& starts, uint32_t task,
                             std::map<uint32_t, uint32_t>& task_of);
+  std::vector<bool> leads_to_circle() const;  // by POU: can its calls come to one who calls itself?
   bool calls_itself(uint32_t pou) const;
   void report_call_instance(const PouInfo& info, const std::string& why, const char* help) const;
   // The bodies of these types, and everything that they can reach through calls.

@@ -2,18 +2,17 @@
 // variable that is given (stdlib/st/any.st). Inputs of methods and function blocks are such
 // records, and those of a function whose body names a part of one. Other functions have code for
 // each type that they are called with, as the standard says (calls/open_functions.h).
+#include <algorithm>
+
 #include "frontend/sema/declarations/collection.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
-namespace {
 
-bool is_any_part(std::string_view name) {
+bool Collection::is_any_part(std::string_view name) {
   return ir::same_name(name, "pvalue") || ir::same_name(name, "diSize") ||
          ir::same_name(name, "TypeClass");
 }
-
-}  // namespace
 
 bool Collection::takes_any(const VarDecl& decl, VarSection section, const PouDecl& pou) const {
   if (section != VarSection::kInput || sema_.options.dialect == Dialect::kIec) return false;
@@ -34,13 +33,18 @@ bool Collection::names_any_part(const VarDecl& decl, const PouDecl& pou) const {
       const Expr& whole = sema_.tree[expr.operand];
       if (whole.kind == ExprKind::kName) known.any_parts.push_back(whole.name);
     });
+    std::ranges::sort(known.any_parts, [](const Name& a, const Name& b) {
+      return a.span.begin < b.span.begin;
+    });
   }
-  return std::ranges::any_of(known.any_parts, [&](const Name& used) {
-    const bool inside = !(used.span.begin < pou.span.begin) && used.span.begin < pou.span.end;
-    return inside && std::ranges::any_of(decl.names, [&](const Name& name) {
-             return ir::same_name(name.text, used.text);
-           });
-  });
+  auto used = std::ranges::partition_point(
+      known.any_parts, [&](const Name& one) { return one.span.begin < pou.span.begin; });
+  for (; used != known.any_parts.end() && used->span.begin < pou.span.end; ++used) {
+    for (const Name& name : decl.names) {
+      if (ir::same_name(name.text, used->text)) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace frontend

@@ -32,20 +32,25 @@ bool Collection::holds_block(SpecId id, uint32_t depth) {
                return holds_block(field.spec, depth + 1);
              });
     case SpecKind::kNamed: {
-      const NameMap<SpecId>& known = block_names();
+      NameMap<SpecId>& known = block_names();
       const auto found = known.find(spec.name.text);
       if (found == known.end()) return false;
-      return !found->second.valid() || holds_block(found->second, depth + 1);
+      const SpecId declared = found->second;
+      if (!declared.valid()) return true;
+      known.erase(found);  // holds none, until one is found in it: a name is looked into once
+      const bool holds = holds_block(declared, depth + 1);
+      if (holds) known.emplace(spec.name.text, SpecId());
+      return holds;
     }
     default:
       return false;
   }
 }
 
-// Function blocks, without a type, and declared types.
-const NameMap<SpecId>& Collection::block_names() {
-  NameMap<SpecId>& names = sema_.declared.block_names;
-  if (!names.empty()) return names;
+// Function blocks, and what is known to hold one, without a type; types that nobody has asked for.
+NameMap<SpecId>& Collection::block_names() {
+  if (sema_.declared.block_names) return *sema_.declared.block_names;
+  NameMap<SpecId>& names = sema_.declared.block_names.emplace();
   for (const PouDecl& decl : sema_.tree.pous) {
     if (decl.kind == PouKind::kFunctionBlock) names.emplace(decl.name.text, SpecId());
   }
@@ -85,8 +90,9 @@ void CommonUses::check_call_instances() {
   bool any = false;
   for (const PouInfo& info : sema_.declared.pous) any = any || !info.call_instances.empty();
   if (!any) return;
+  const std::vector<bool> circles = leads_to_circle();
   for (const PouInfo& info : sema_.declared.pous) {
-    if (!info.call_instances.empty() && calls_itself(info.number)) {
+    if (circles[info.number] && !info.call_instances.empty() && calls_itself(info.number)) {
       report_call_instance(info, "calls itself", "declare it in VAR of a function block");
     }
   }
@@ -117,6 +123,29 @@ void CommonUses::check_call_instances(const std::vector<ir::TypeId>& starts, uin
                              " and by task " + quoted(sema_.program.tasks[task].name),
                          "pass the instance as VAR_IN_OUT, or make a method of the function");
   }
+}
+
+// Who has left no callee is taken away, and so on: nobody, as a rule, is left then.
+std::vector<bool> CommonUses::leads_to_circle() const {
+  const auto& pous = sema_.declared.pous;
+  std::vector<bool> leads(pous.size(), true);
+  std::vector<size_t> left(pous.size());
+  std::vector<std::vector<uint32_t>> callers(pous.size());
+  std::vector<uint32_t> done;
+  for (const PouInfo& info : pous) {
+    left[info.number] = info.callees.size();
+    for (const uint32_t callee : info.callees) callers[callee].push_back(info.number);
+    if (info.callees.empty()) done.push_back(info.number);
+  }
+  while (!done.empty()) {
+    const uint32_t callee = done.back();
+    done.pop_back();
+    leads[callee] = false;
+    for (const uint32_t caller : callers[callee]) {
+      if (--left[caller] == 0) done.push_back(caller);
+    }
+  }
+  return leads;
 }
 
 bool CommonUses::calls_itself(uint32_t pou) const {

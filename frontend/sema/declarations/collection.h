@@ -23,6 +23,7 @@ class Collection : public Phase {
   std::string static_list_name(const PouInfo& info) const;
   // Is it an input of type ANY that the POU has as a record? (any_inputs.cc)
   bool takes_any(const VarDecl& decl, VarSection section, const PouDecl& pou) const;
+  static bool is_any_part(std::string_view name);  // pvalue, diSize, TypeClass
 
  private:
   // collection.cc
@@ -49,7 +50,7 @@ class Collection : public Phase {
   bool names_any_part(const VarDecl& decl, const PouDecl& pou) const;
   // call_instances.cc
   bool holds_block(SpecId spec, uint32_t depth);
-  const NameMap<SpecId>& block_names();
+  NameMap<SpecId>& block_names();
   bool is_call_instance(const Variable& variable, const PouInfo& info);
   void add_call_instance(Variable variable, PouInfo& info);
   void add_edge(VarId input, PouInfo& info);

@@ -12,19 +12,9 @@
 
 namespace frontend {
 
-namespace {
-
-// What an input of type ANY is made of in CODESYS and TwinCAT.
-bool is_any_part(std::string_view name) {
-  return ir::same_name(name, "pvalue") || ir::same_name(name, "diSize") ||
-         ir::same_name(name, "TypeClass");
-}
-
-}  // namespace
-
 // Here such an input is the value itself, and a pointer to it would lead to a copy.
 bool Expressions::refuse_any_part(const Expr& expr, const Note& operand) {
-  if (!operand.variable.valid() || !is_any_part(expr.name.text)) return false;
+  if (!operand.variable.valid() || !Collection::is_any_part(expr.name.text)) return false;
   const Variable& variable = resolve(operand.variable);
   if (variable.decl == nullptr || variable.section != VarSection::kInput) return false;
   const Spec& spec = sema_.tree[variable.decl->spec];
@@ -145,11 +135,12 @@ Note Expressions::infer_index(const Expr& expr) {
   if (!note.type.valid()) return {};
   if (is_string(sema_.program.types, note.type)) return infer_character(expr, note);
   const OpenArray* open = sema_.declared.open_array(note.type);
-  ir::Type array = sema_.program.types[note.type];
+  ir::Type as_array;
+  const ir::Type& array = open == nullptr ? sema_.program.types[note.type] : as_array;
   if (open != nullptr) {
-    array.kind = ir::Kind::kArray;
-    array.base = open->element;
-    array.dims.assign(open->dims, {INT64_MIN, INT64_MAX});
+    as_array.kind = ir::Kind::kArray;
+    as_array.base = open->element;
+    as_array.dims.assign(open->dims, {INT64_MIN, INT64_MAX});
     note.known = Known::kNo;
     note.can_trap = true;
   }
