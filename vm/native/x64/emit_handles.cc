@@ -81,17 +81,19 @@ void Emitter::move_handle(const Node& n, const Step& step) {
   a_.jump_if(Condition::kAboveOrEqual, slow);
   if (bytes.kind == Place::kConstant) {
     const auto by = static_cast<int32_t>(bytes.bits);
-    a_.alu_imm(Alu::kAdd, Operand::of(kScratch), by, 4);
+    a_.alu_imm(Alu::kAdd, Operand::of(kScratch), by, 8);
     a_.alu(Alu::kCmp, kScratch, Operand::of(KNOWN(size)), 8);
     a_.jump_if(Condition::kAboveOrEqual, slow);
     a_.address(to, {handle, 0xff, 1, true, by}, 8);
   } else {
-    const uint8_t by = integer_register(bytes);
-    a_.alu(Alu::kAdd, kScratch, Operand::of(by), 4);
+    // With all 64 bits: what goes past 4 GB is outside, too.
+    a_.load_signed(kScratch, Operand::of(integer_register(bytes)), 4);
+    a_.alu(Alu::kAdd, kScratch, Operand::of(handle), 8);
+    a_.alu(Alu::kSub, kScratch, Operand::of(KNOWN(begin)), 8);
     a_.alu(Alu::kCmp, kScratch, Operand::of(KNOWN(size)), 8);
     a_.jump_if(Condition::kAboveOrEqual, slow);
-    a_.load_signed(to, Operand::of(by), 4);
-    a_.alu(Alu::kAdd, to, Operand::of(handle), 8);
+    a_.alu(Alu::kAdd, kScratch, Operand::of(KNOWN(begin)), 8);
+    a_.move(to, kScratch);
   }
   a_.bind(handle_stubs_.back().back);
 }
