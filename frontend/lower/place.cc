@@ -169,7 +169,7 @@ ir::Place Places::constant_place(ExprId id) {
 }
 
 void Places::note_output(const ir::DirectAddress& address, ir::TypeId type, base::SourceSpan span) {
-  bool known = address.bit_size != 0 && address.bit_offset != ir::kOpenAddress && type.valid();
+  bool known = address.bit_size != 0 && type.valid();
   if (address.area == ir::DirectArea::kOutput && known) {
     info_.writes.push_back({address, type, span});
   }

@@ -164,7 +164,7 @@ bool WriteChecks::check_writable_variable(const Expr& expr, VarId id) {
   }
   sema_.mark_written(id);
   ask<Places>().note_outer_use(id, true, expr.span);
-  if (variable->decl != nullptr && variable->decl->has_address) {
+  if (variable->decl != nullptr && variable->decl->has_address && !variable->decl->incomplete) {
     ask<Places>().note_output(variable->decl->address, variable->type, expr.span);
   }
   if (std::find(body_.flow.for_variables.begin(), body_.flow.for_variables.end(), id) !=

@@ -1,6 +1,6 @@
 #!/bin/sh
 # `AT %I*`, `%Q*`, `%M*` without VAR_CONFIG: the linker gives addresses, an online change keeps them,
-# and `stc dump --addresses` lists them (language.md, section 3).
+# and `stc dump --addresses` lists them.
 . "$(dirname "$0")/lib.sh"
 
 cat >v1.st <<'ST'
