@@ -12,7 +12,8 @@ most=3.25  # lines of headers for each line of a source; where it comes down, so
 left_out() { echo "left out: $1"; exit 77; }
 setting() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 [ -f "$build/.ninja_deps" ] && command -v ninja >/dev/null || left_out "not built by ninja"
-[ "$(setting CMAKE_BUILD_TYPE) $(setting STC_BATCH)" = "Release 16" ] || left_out "other units"
+kind="$(setting CMAKE_BUILD_TYPE) $(setting STC_BATCH) $(setting STC_ADAPTERS)"
+[ "$kind" = "Release 16 ON" ] || left_out "other units"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$build"
