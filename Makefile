@@ -14,6 +14,7 @@
 #   make differential  5,000 random programs and changes on every tier, 5,000 changes of
 #                      declarations against the oracle of fates; SEED=n begins elsewhere
 #   make soak     long differential and hard mode runs
+#   make maths    the mathematical functions against more precise ones; COUNT=n arguments each
 #   make mutate   mistakes that the tests must see, one at a time; ONLY='C7 store' for some of them
 #   make test-arm64  golden files and random programs on AArch64, under qemu
 #   make minimal  build and test with every adapter off
@@ -27,7 +28,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: install deb archives all build setup demo test test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak mutate coverage docs clean
+.PHONY: install deb archives all build setup demo test test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
 
 all: build
 
@@ -89,8 +90,8 @@ tsan: setup
 test-arm64: setup
 	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user
 	@cmake --preset arm64 >/dev/null
-	@cmake --build build/arm64 -j $(JOBS) --target golden differential test_native
-	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(JOBS) -R '^(golden_|unit_native$$)'
+	@cmake --build build/arm64 -j $(JOBS) --target golden differential test_native test_stdlib
+	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(JOBS) -R '^(golden_|unit_(native|stdlib)$$)'
 	@qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu build/arm64/tests/differential 1 50
 	@qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu build/arm64/tests/differential 1 50 --changes
 
@@ -139,6 +140,11 @@ soak: build
 	@$(BUILD)/tests/sim 1 4 --hours 8 --jobs $(JOBS)
 	@$(BUILD)/tests/differential 1 100000 --shrink --jobs $(JOBS)
 	@tests/cli/determinism.sh $(CURDIR) $(CURDIR)/$(BUILD) 100000
+
+# 10^9 arguments of each function: hours.
+COUNT := 1000000000
+maths: build
+	@$(BUILD)/tests/maths $(COUNT) $(SEED)
 
 # In a copy of the sources with a build of its own. ONLY: parts of names or of files.
 mutate: setup

@@ -157,10 +157,14 @@ ir::ValueId Values::emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::
 }
 
 ir::ValueId ValueCode::power(Typed base, Typed exponent, ir::TypeId own) {
-  ir::ValueId x = machine_convert(base.value, scalar(base.type), ir::Scalar::kF64);
+  // The base decides: whole ones have more bits than a REAL, and so may a whole exponent.
+  const bool is_real = scalar(base.type) == ir::Scalar::kF32;
+  const ir::Scalar machine = is_real ? ir::Scalar::kF32 : ir::Scalar::kF64;
+  ir::ValueId x = machine_convert(base.value, scalar(base.type), machine);
   ir::ValueId y = machine_convert(exponent.value, scalar(exponent.type), ir::Scalar::kF64);
-  ir::ValueId result = native(stdlib::NativeId::kExpt, {x, y});
-  return machine_convert(result, ir::Scalar::kF64, scalar(own));
+  const auto id = is_real ? stdlib::NativeId::kExptF32 : stdlib::NativeId::kExpt;
+  ir::ValueId result = native(id, {x, y});
+  return machine_convert(result, machine, scalar(own));
 }
 
 // All times and dates are nanoseconds in 64 bits; what may be combined was checked.

@@ -16,28 +16,28 @@ using stdlib::FunctionId;
 using stdlib::FunctionRule;
 using stdlib::NativeId;
 
-NativeId real_native(FunctionId id) {
+NativeId real_native(FunctionId id, bool is_long) {
   switch (id) {
     case FunctionId::kLn:
-      return NativeId::kLn;
+      return is_long ? NativeId::kLn : NativeId::kLnF32;
     case FunctionId::kLog:
-      return NativeId::kLog;
+      return is_long ? NativeId::kLog : NativeId::kLogF32;
     case FunctionId::kExp:
-      return NativeId::kExp;
+      return is_long ? NativeId::kExp : NativeId::kExpF32;
     case FunctionId::kSin:
-      return NativeId::kSin;
+      return is_long ? NativeId::kSin : NativeId::kSinF32;
     case FunctionId::kCos:
-      return NativeId::kCos;
+      return is_long ? NativeId::kCos : NativeId::kCosF32;
     case FunctionId::kTan:
-      return NativeId::kTan;
+      return is_long ? NativeId::kTan : NativeId::kTanF32;
     case FunctionId::kAsin:
-      return NativeId::kAsin;
+      return is_long ? NativeId::kAsin : NativeId::kAsinF32;
     case FunctionId::kAcos:
-      return NativeId::kAcos;
+      return is_long ? NativeId::kAcos : NativeId::kAcosF32;
     case FunctionId::kAtan:
-      return NativeId::kAtan;
+      return is_long ? NativeId::kAtan : NativeId::kAtanF32;
     default:
-      return NativeId::kAtan2;
+      return is_long ? NativeId::kAtan2 : NativeId::kAtan2F32;
   }
 }
 
@@ -121,11 +121,8 @@ ir::ValueId StandardCode::real_function(const std::vector<ExprId>& args,
     return build_.unary(ir::Op::kSqrt, machine, value(args[0], own));
   }
   ir::ValueList operands;
-  for (ExprId arg : args) {
-    operands.push_back(code_.machine_convert(value(arg, own), machine, ir::Scalar::kF64));
-  }
-  return code_.machine_convert(code_.native(real_native(row.id), operands), ir::Scalar::kF64,
-                               machine);
+  for (ExprId arg : args) operands.push_back(value(arg, own));
+  return code_.native(real_native(row.id, machine == ir::Scalar::kF64), operands);
 }
 
 // ADD(a, b, c) is a + b + c.

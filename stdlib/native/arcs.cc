@@ -37,8 +37,8 @@ constexpr std::array<Pair, 17> kArcs = {{
 // arctan(y / x) for 0 <= y <= x, x > 0. With c = k / 16 near y / x, arctan(y / x) is arctan c +
 // arctan t, t = (y - c x) / (x + c y), |t| < 0.032; the terms from t^3 on are plain doubles, below
 // 2^-11 of t.
-Pair steep_angle(Pair y, Pair x) {
-  const double k = std::floor(16 * (y.high / x.high) + 0.5);
+constexpr Pair steep_angle(Pair y, Pair x) {
+  const double k = static_cast<int32_t>(16 * (y.high / x.high) + 0.5);
   const Pair c = {k / 16, 0};
   const Pair t = divide(add(y, negate(multiply(c, x))), add(x, multiply(c, y)));
   const double z = t.high * t.high;
@@ -48,12 +48,61 @@ Pair steep_angle(Pair y, Pair x) {
   return add(kArcs[static_cast<uint32_t>(k)], fast_two_sum(t.high, t.low + rest));
 }
 
-// Angle of (|x|, |y|) from the x axis; `left`: of (-|x|, |y|). Not both 0.
-Pair angle(Pair y, Pair x, bool left) {
+// arctan (y / x) for y >= 0 and x > 0: what the compiler makes tables of.
+constexpr Pair exact_arc(Pair y, Pair x) {
   const bool above = y.high > x.high;
-  Pair result = above ? steep_angle(x, y) : steep_angle(y, x);
-  if (above) result = add(kHalfPi, negate(result));
-  return left ? add(kPi, negate(result)) : result;
+  const Pair result = above ? steep_angle(x, y) : steep_angle(y, x);
+  return above ? add(kHalfPi, negate(result)) : result;
+}
+
+// arctan t = t + t^3 * tail for |t| <= 1 / 8, to 2^-60 of it.
+double arc_tail(double z, double square) {
+  const double first = (z * (1.0 / 5) - 1.0 / 3) + square * (z * (1.0 / 9) - 1.0 / 7);
+  const double second = (z * (1.0 / 13) - 1.0 / 11) + square * (z * (1.0 / 17) - 1.0 / 15);
+  return first + square * square * second;
+}
+
+// The numbers from 1/8 to 16 with five bits after the first, by their bits.
+constexpr uint64_t kFirstArc = uint64_t{0x3fc} << 5;
+constexpr double kInfiniteArc = std::numeric_limits<double>::infinity();
+
+constexpr std::array<Pair, 7 * 32 + 1> arcs_of_steps() {
+  std::array<Pair, 7 * 32 + 1> arcs = {};
+  for (uint64_t i = 0; i < arcs.size(); ++i) {
+    arcs[i] = exact_arc({std::bit_cast<double>((kFirstArc + i) << 47), 0}, {1, 0});
+  }
+  return arcs;
+}
+constexpr std::array<Pair, 7 * 32 + 1> kArcsOfSteps = arcs_of_steps();
+
+// arctan q for q >= 0, as a sum that is within 0.05 units of the true value.
+Pair arc(Pair q) {
+  if (q.high < 0.125) {
+    const double z = q.high * q.high;
+    return {q.high, q.low + q.high * z * arc_tail(z, z * z)};
+  }
+  if (q.high >= 16) {
+    // What is left is at most 1 / 16, and the result at least 1.5.
+    const double t = -1 / q.high;
+    const double z = t * t;
+    return {kHalfPi.high, kHalfPi.low + t + t * z * arc_tail(z, z * z)};
+  }
+  // c is q with five bits after the first; arctan q is arctan c + arctan t.
+  const uint64_t bits = std::bit_cast<uint64_t>(q.high) + (uint64_t{1} << 46);
+  const double c = std::bit_cast<double>(bits & ~((uint64_t{1} << 47) - 1));
+  const double t = ((q.high - c) + q.low) / (1 + c * q.high);
+  const double z = t * t;
+  const Pair& whole = kArcsOfSteps[(bits >> 47) - kFirstArc];
+  const double tail = t * z * (z * (1.0 / 5 - z * (1.0 / 7)) - 1.0 / 3);
+  return {whole.high, t + (whole.low + tail)};
+}
+
+// Angle of (x, y) from the x axis, y >= 0 and x > 0; `left`: of (-x, y).
+double angle_of(Pair y, Pair x, bool left) {
+  const Pair right = arc(x.high == 0 ? Pair{kInfiniteArc, 0} : short_quotient(y, x));
+  if (!left) return value_of(right);
+  const Pair size = two_sum(kPi.high, -right.high);
+  return size.high + (size.low + (kPi.low - right.low));
 }
 
 // The root of 1 - x^2.
@@ -86,7 +135,7 @@ double angle_of_point(double y, double x, bool left) {
   if (difference < -60 && left) return kPi.high;
   if (difference < -60) return y / x;
   const int32_t scale = 1023 - std::max(exponent_of(y), exponent_of(x));
-  return value_of(angle({shifted(y, scale), 0}, {shifted(x, scale), 0}, left));
+  return angle_of({shifted(y, scale), 0}, {shifted(x, scale), 0}, left);
 }
 
 // One of them is 0 or infinite; y has no sign.
@@ -111,19 +160,49 @@ double arc_tangent2(double y, double x) {
 }
 
 double arc_tangent(double x) {
-  if (x != x || std::fabs(x) < kTinyArc) return x;
-  return arc_tangent2(x, 1);
+  if (!(std::fabs(x) >= kTinyArc)) return x;
+  return std::copysign(value_of(arc({std::fabs(x), 0})), x);
 }
 
 double arc_sine(double x) {
   if (!(std::fabs(x) <= 1)) return std::numeric_limits<double>::quiet_NaN();
   if (std::fabs(x) < kTinyArc) return x;
-  return std::copysign(value_of(angle({std::fabs(x), 0}, cathetus(x), false)), x);
+  return std::copysign(angle_of({std::fabs(x), 0}, cathetus(x), false), x);
 }
 
 double arc_cosine(double x) {
   if (!(std::fabs(x) <= 1)) return std::numeric_limits<double>::quiet_NaN();
-  return value_of(angle(cathetus(x), {std::fabs(x), 0}, x < 0));
+  return angle_of(cathetus(x), {std::fabs(x), 0}, x < 0);
 }
 
+// Numbers of 24 bits have no error that counts in double.
+namespace real {
+
+float arc_tangent(float x) { return static_cast<float>(stdlib::arc_tangent(x)); }
+
+float arc_tangent2(float y, float x) {
+  const double height = std::fabs(y);
+  const double width = std::fabs(x);
+  if (y != y || x != x) return std::numeric_limits<float>::quiet_NaN();
+  if (height == 0 || (std::isinf(height) && std::isinf(width))) {
+    return static_cast<float>(stdlib::arc_tangent2(y, x));
+  }
+  const double angle = stdlib::arc_tangent(height / width);  // of infinity, where the width is 0
+  return static_cast<float>(std::copysign(std::signbit(x) ? kPi.high - angle : angle, y));
+}
+
+float arc_sine(float x) {
+  const double size = std::fabs(x);
+  if (!(size <= 1)) return std::numeric_limits<float>::quiet_NaN();
+  const double angle = stdlib::arc_tangent(size / std::sqrt((1 - size) * (1 + size)));
+  return static_cast<float>(std::copysign(angle, x));
+}
+
+float arc_cosine(float x) {
+  const double at = x;
+  if (!(std::fabs(at) <= 1)) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(2 * stdlib::arc_tangent(std::sqrt((1 - at) / (1 + at))));
+}
+
+}  // namespace real
 }  // namespace stdlib

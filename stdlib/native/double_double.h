@@ -6,6 +6,8 @@
 // The algorithms are those of Dekker (1971) and Knuth (TAOCP 4.2.2).
 #pragma once
 
+#include <cstdint>
+
 namespace stdlib {
 
 struct Pair {
@@ -63,8 +65,22 @@ constexpr Pair divide(Pair a, Pair b) {
   return add(fast_two_sum(first, second), {more.high / b.high, 0});
 }
 
+// a / b to some 2^-75 of it, where the low parts may be as large as 2^-3 of the high ones.
+constexpr Pair short_quotient(Pair a, Pair b) {
+  const Pair over = fast_two_sum(a.high, a.low);
+  const Pair under = fast_two_sum(b.high, b.low);
+  const double first = over.high / under.high;
+  const Pair product = two_product(first, under.high);
+  const double rest = (over.high - product.high) - product.low + (over.low - first * under.low);
+  return {first, rest / under.high};
+}
+
 constexpr double value_of(Pair a) { return a.high + a.low; }
 
+// x + 1.5 * 2^52 has the whole number nearest to x in its low bits, for |x| < 2^50.
+inline constexpr double kWholeNumbers = 0x1.8p+52;
+
+inline constexpr Pair kLn2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 inline constexpr Pair kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
 }  // namespace stdlib

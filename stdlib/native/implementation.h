@@ -82,6 +82,8 @@ template <class T>
 uint64_t result_bits(T value) {
   if constexpr (kLetter<T> == 'F') {
     return std::bit_cast<uint64_t>(value);
+  } else if constexpr (kLetter<T> == 'f') {
+    return std::bit_cast<uint32_t>(value);
   } else {
     return static_cast<uint64_t>(value);
   }

@@ -24,6 +24,21 @@ double decimal_logarithm(double x);
 double exponential(double x);
 double power(double base, double exponent);
 
+// Those of REAL are computed in double with fewer terms, and rounded once: within 0.51 units.
+namespace real {
+float sine(float x);
+float cosine(float x);
+float tangent(float x);
+float arc_sine(float x);
+float arc_cosine(float x);
+float arc_tangent(float x);
+float arc_tangent2(float y, float x);
+float natural_logarithm(float x);
+float decimal_logarithm(float x);
+float exponential(float x);
+float power(float base, double exponent);
+}  // namespace real
+
 // x = (quadrant + fraction) * pi / 2 modulo two pi; `angle` = fraction * pi / 2 lies in
 // [-pi/4, pi/4]. For finite x of any size.
 struct Reduced {

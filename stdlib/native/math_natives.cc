@@ -16,4 +16,16 @@ STC_NATIVE(kExp, exponential)
 STC_NATIVE(kAtan2, arc_tangent2)
 STC_NATIVE(kExpt, power)
 
+STC_NATIVE(kSinF32, real::sine)
+STC_NATIVE(kCosF32, real::cosine)
+STC_NATIVE(kTanF32, real::tangent)
+STC_NATIVE(kAsinF32, real::arc_sine)
+STC_NATIVE(kAcosF32, real::arc_cosine)
+STC_NATIVE(kAtanF32, real::arc_tangent)
+STC_NATIVE(kLnF32, real::natural_logarithm)
+STC_NATIVE(kLogF32, real::decimal_logarithm)
+STC_NATIVE(kExpF32, real::exponential)
+STC_NATIVE(kAtan2F32, real::arc_tangent2)
+STC_NATIVE(kExptF32, real::power)
+
 }  // namespace stdlib
