@@ -51,6 +51,23 @@ expect 7 stvm fleet status --host silent --timeout 1
 said '^silent: R0404: the controller on silent does not answer$'
 if kill -0 "$(cat silent)" 2>/dev/null; then fail "the ssh that says nothing is still there"; fi
 
+# A `dir` is a folder, also one that is not there, and a `host` is a host, also one that a folder has
+# the name of: ssh is asked for hosts only. So it is for who is left, and in a plan.
+rm hosts
+printf '[controllers.off]\ndir = "off"\n' >off.toml
+expect 7 stvm fleet change x.fleet --fleet off.toml --dir other --yes
+said '^not done: R0404: no controller runs there: off: '
+said '^not done: R0404: no controller runs there: other: '
+expect 7 stvm fleet continue x.fleet --yes
+said '^not done: R0404: no controller runs there: .*/off: '
+printf '[roll]\nsoak = "0s"\n[[wave]]\ncount = 1\nmax_failed = 1\n' >>off.toml
+expect 1 stvm fleet roll x.fleet --fleet off.toml --yes
+said 'no controller runs there: .*/off: '
+[ ! -e hosts ] || fail "ssh was asked for a folder: $(cat hosts)"
+expect 7 stvm fleet status x.fleet --host line1
+said '^line1: R0404: the controller on line1 closed the connection$'
+rm x.fleet.*
+
 expect 1 stvm fleet change x.fleet --fleet fleet.toml --yes --allow-overrun --jobs 4
 said '^line1 +original +done '
 said '^Line 2 +own +done '

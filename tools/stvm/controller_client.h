@@ -22,9 +22,15 @@ class ControllerClient {
  public:
   // The one that --dir or --host names.
   static base::Result<ControllerClient> connect(const tools::Options& options);
-  // A state directory, or a host. Waits for each answer so long.
+  // A state directory where there is one, else a host. Waits for each answer so long.
   static base::Result<ControllerClient> connect_to(
       const std::string& place, uint32_t patience_s = vm::SocketClient::kPatienceSeconds);
+  // Of this machine; of another one, where an empty directory is the one that it takes by itself.
+  static base::Result<ControllerClient> connect_here(const std::string& directory,
+                                                     uint32_t patience_s);
+  static base::Result<ControllerClient> connect_there(const std::string& host,
+                                                      const std::string& directory,
+                                                      uint32_t patience_s);
   explicit ControllerClient(std::unique_ptr<vm::Transport> transport)
       : transport_(std::move(transport)) {}
 
@@ -75,11 +81,6 @@ class ControllerClient {
                                                  const std::string& way_back = {});
 
  private:
-  static base::Result<ControllerClient> connect_here(const std::string& directory,
-                                                     uint32_t patience_s);
-  static base::Result<ControllerClient> connect_there(const std::string& host,
-                                                      const std::string& directory,
-                                                      uint32_t patience_s);
   base::Result<base::Bytes> image_parts(vm::Request request, const base::Digest* expected);
   // Entries of a page, added to `all`. False: there were none.
   base::Result<bool> journal_page(const vm::Request& request,

@@ -209,7 +209,8 @@ FleetAccess fleet_access(uint32_t patience_s, const std::string& file,
                          const PackageOptions& made) {
   FleetAccess access;
   access.connect = [patience_s](const FleetMember& member) {
-    return ControllerClient::connect_to(member.place, patience_s);
+    return is_at_folder(member) ? ControllerClient::connect_here(member.place, patience_s)
+                                : ControllerClient::connect_there(member.place, {}, patience_s);
   };
   access.package = [file, made](const base::Bytes& running, size_t step) {
     PackageOptions of_step = made;

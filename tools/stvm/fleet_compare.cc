@@ -21,7 +21,7 @@ struct Compared {
 FleetMember member_of(const std::vector<FleetMember>& known, const std::string& name) {
   const auto found = std::find_if(known.begin(), known.end(),
                                   [&](const FleetMember& one) { return one.name == name; });
-  return found == known.end() ? FleetMember{name, name, false} : *found;
+  return found == known.end() ? FleetMember{name, name} : *found;
 }
 
 base::Result<Compared> with_file(const tools::Options& options, const FleetAccess& access) {

@@ -30,11 +30,11 @@ std::string toml_text(const std::string& text) {
 }
 
 // A folder is meant wherever the next run begins.
-std::string place_text(const std::string& place) {
-  if (!tools::is_folder(place)) return "host = " + toml_text(place);
+std::string place_text(const FleetMember& member) {
+  if (!is_at_folder(member)) return "host = " + toml_text(member.place);
   std::error_code error;
-  const std::filesystem::path whole = std::filesystem::absolute(place, error);
-  return "dir = " + toml_text(error ? place : whole.string());
+  const std::filesystem::path whole = std::filesystem::absolute(member.place, error);
+  return "dir = " + toml_text(error ? member.place : whole.string());
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ void FleetLeft::write() {
   for (const FleetMember& member : left_) {
     text +=
         base::joined({"[controllers.", std::to_string(++number),
-                      "]\nname = ", toml_text(member.name), "\n", place_text(member.place), "\n"});
+                      "]\nname = ", toml_text(member.name), "\n", place_text(member), "\n"});
     if (member.allow_loss) text += "allow_loss = true\n";
   }
   base::Status written = tools::write_file(

@@ -66,7 +66,10 @@ class FleetList {
     if (row.member.name.empty()) row.member.name = name;
     if (setting == "name") return take_text(value, row.member.name);
     if (setting == "allow_loss") return take_flag(value, row.member.allow_loss);
-    if (setting == "dir" || setting == "host") return take_place(value, row.member);
+    if (setting == "dir" || setting == "host") {
+      const bool folder = setting == "dir";
+      return take_place(value, folder ? PlaceKind::kFolder : PlaceKind::kHost, row.member);
+    }
     return mistake(
         value.line, value.column,
         "`" + setting + "` is not known; a controller has dir or host, name and allow_loss");
@@ -90,10 +93,12 @@ class FleetList {
     return base::Ok{};
   }
 
-  base::Status take_place(const tools::TomlValue& value, FleetMember& member) const {
+  base::Status take_place(const tools::TomlValue& value, PlaceKind kind,
+                          FleetMember& member) const {
     if (!member.place.empty()) {
       return mistake(value.line, value.column, "`" + member.name + "` has a dir and a host");
     }
+    member.kind = kind;
     return take_text(value, member.place);
   }
 
@@ -102,6 +107,11 @@ class FleetList {
 };
 
 }  // namespace
+
+bool is_at_folder(const FleetMember& member) {
+  if (member.kind == PlaceKind::kEither) return tools::is_folder(member.place);
+  return member.kind == PlaceKind::kFolder;
+}
 
 base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file) {
   base::Result<base::Bytes> bytes = tools::read_bytes(file);
@@ -117,9 +127,13 @@ base::Result<std::vector<FleetMember>> parse_fleet_list(const std::string& file,
 
 base::Result<std::vector<FleetMember>> fleet_members(const tools::Options& options) {
   std::vector<FleetMember> members;
-  for (const char* option : {"--dir", "--host"}) {
-    for (const std::string& place : options.all(option)) members.push_back({place, place, false});
-  }
+  const auto add = [&](const char* option, PlaceKind kind) {
+    for (const std::string& place : options.all(option)) {
+      members.push_back({place, place, false, kind});
+    }
+  };
+  add("--dir", PlaceKind::kFolder);
+  add("--host", PlaceKind::kHost);
   if (options.has("--fleet")) {
     base::Result<std::vector<FleetMember>> listed = read_fleet_list(options.text("--fleet"));
     if (!listed.ok()) return listed.error();

@@ -6,6 +6,7 @@
 //   allow_loss = true       # for this one only
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,18 @@
 
 namespace stvm {
 
+// What the words say that name a place. kEither, of a command line without them: a folder where
+// there is one, else a host.
+enum class PlaceKind : uint8_t { kEither, kFolder, kHost };
+
 struct FleetMember {
   std::string name;   // as results call it
   std::string place;  // a state directory or a host
   bool allow_loss = false;
+  PlaceKind kind = PlaceKind::kEither;
 };
+
+bool is_at_folder(const FleetMember& member);
 
 // Reads the list of a file. Mistakes with line and column (kBadProject).
 base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file);

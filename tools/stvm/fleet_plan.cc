@@ -167,11 +167,11 @@ base::Status read_list(const std::string& file, RollPlan& plan) {
 }
 
 // A folder is meant wherever the plan is gone on with.
-std::string whole_place(const std::string& place) {
-  if (!tools::is_folder(place)) return place;
+std::string whole_place(const FleetMember& member) {
+  if (!is_at_folder(member)) return member.place;
   std::error_code error;
-  const std::filesystem::path whole = std::filesystem::absolute(place, error);
-  return error ? place : whole.string();
+  const std::filesystem::path whole = std::filesystem::absolute(member.place, error);
+  return error ? member.place : whole.string();
 }
 
 }  // namespace
@@ -284,7 +284,7 @@ base::Result<RollPlan> new_plan(const std::string& list_file) {
   if (!text.ok()) return text.error();
   plan.list = std::move(*text);
   if (base::Status listed = read_list(list_file, plan); !listed.ok()) return listed.error();
-  for (RollMember& row : plan.members) row.member.place = whole_place(row.member.place);
+  for (RollMember& row : plan.members) row.member.place = whole_place(row.member);
   return plan;
 }
 
