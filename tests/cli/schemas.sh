@@ -134,6 +134,11 @@ expect 0 stc fleet one.st two.st -o two.fleet
 serve other other.st
 answers stvm-fleet-status 7 stvm fleet status two.fleet --dir other
 answers stvm-change 0 at change next --yes --dry-run --all
+# Errors of the sources come from the compiler behind it, in that form too, beside the text.
+answers refused 1 at change bad.st --yes
+json '[(e["code"], e["file"], e["line"]) for e in d["diagnostics"]] == [("E2001", "bad.st", 1)]'
+said '^bad.st:1:[0-9]+: error.E2001.'
+answers refused 1 stvm run bad.st
 answers stvm-change 0 at change next --yes --all
 answers stvm-status 0 at status
 answers stvm-status-units 0 at status --units

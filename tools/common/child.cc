@@ -18,6 +18,7 @@
 #include <optional>
 #include <utility>
 
+#include "tools/common/exit.h"
 #include "tools/common/files.h"
 
 extern char** environ;
@@ -120,6 +121,17 @@ Output sort_out(const std::string& tool, const std::string& text) {
 
 }  // namespace
 
+// Errors of sources, read as text before, once more as JSON on our standard output. Nothing else
+// of this run is printed there.
+static void tell_as_json(std::vector<std::string> command) {
+  command.insert(command.begin() + 2, "--format=json");
+  std::fflush(stdout);
+  const base::Result<pid_t> child = spawn(command, [](FileActions& actions) {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  });
+  if (child.ok()) wait_for(*child);
+}
+
 base::Status run_beside(const std::string& tool, const std::vector<std::string>& arguments,
                         Messages messages) {
   std::vector<std::string> command = {own_folder() + "/" + tool};
@@ -143,7 +155,11 @@ base::Status run_beside(const std::string& tool, const std::vector<std::string>&
   const bool good = wait_for(*child) == 0;
   if (!good || messages == Messages::kShown) std::fputs(output.messages.c_str(), stderr);
   if (good) return base::Ok{};
-  if (output.refusal) return *output.refusal;
+  if (output.refusal) {
+    const bool of_sources = output.refusal->refusal == base::Refusal::kSourceErrors;
+    if (of_sources && has_refusal_form()) tell_as_json(std::move(command));
+    return *output.refusal;
+  }
   return base::Error{base::Refusal::kInternal, tool + " failed without a reason"};
 }
 

@@ -43,6 +43,7 @@ int exit_code(const base::Error& error) {
 }
 
 void set_refusal_form(RefusalForm form) { refusal_form = form; }
+bool has_refusal_form() { return refusal_form != nullptr; }
 
 int refuse_reported(const char* tool, const base::Error& error) {
   std::fputs(refusal_text(tool, error, has_colour(STDERR_FILENO)).c_str(), stderr);

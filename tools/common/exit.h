@@ -28,6 +28,7 @@ std::span<const ExitRow> exit_rows();
 // for people on standard error. dispatch() says it once.
 using RefusalForm = std::string (*)(const base::Error& error);
 void set_refusal_form(RefusalForm form);
+bool has_refusal_form();
 
 // Says "TOOL: R0401: text" and the way out on stderr; returns the exit code.
 int refuse(const char* tool, const base::Error& error);
