@@ -10,6 +10,7 @@ namespace stvm {
 namespace {
 
 constexpr int64_t kBetweenLooksMs = 1000;
+constexpr const char* kLost = "it does not answer; if the edit came there, it decides alone";
 
 bool counts_as_failed(RollState state) {
   return state == RollState::kRefused || state == RollState::kFailed || state == RollState::kLost ||
@@ -295,7 +296,7 @@ void FleetRoll::silent(size_t member) {
     since = row.silent_ms;
   }
   if (ports_.now_ms() - since < plan_.settings.lost_after_ms) return;
-  decide(member, RollState::kLost, "it does not answer; it decides alone");
+  decide(member, RollState::kLost, kLost);
 }
 
 void FleetRoll::watch_trials() {
@@ -323,7 +324,7 @@ void FleetRoll::end_wave() {
   for (const RollState state : {RollState::kStarting, RollState::kOnTrial}) {
     for (const size_t member : with_state(plan_.wave, state)) {
       const bool silent_now = plan_.members[member].silent_ms != 0;
-      if (silent_now && !decide(member, RollState::kLost, "it does not answer; it decides alone")) {
+      if (silent_now && !decide(member, RollState::kLost, kLost)) {
         return;
       }
     }
