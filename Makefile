@@ -3,7 +3,9 @@
 #
 #   make          build/release/bin/stc and stvm
 #   make demo     a bottling line, changed while it runs
+#   make demo-fleet   edits for the five controllers of a pumping district, one of which is wrong
 #   make test     everything that has to hold, some minutes
+#   make test-ansible   the module of Ansible in playbooks, which `make test` skips without Ansible
 #   make bench    ST against C, and the compiler; writes docs/performance.md
 #   make bench-large   the compiler on a million lines
 #   make bench-pause   how long online changes stop the tasks; writes docs/pause.md
@@ -28,7 +30,7 @@
 BUILD := build/release
 JOBS := $(shell nproc)
 
-.PHONY: install deb archives all build setup demo test test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
+.PHONY: install deb archives all build setup demo demo-fleet test test-ansible test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
 
 all: build
 
@@ -44,8 +46,19 @@ demo: setup
 	@cmake --build $(BUILD) -j $(JOBS) --target stc stvm
 	@scripts/demo.sh $(BUILD)/bin
 
+demo-fleet: setup
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target stc stvm
+	@scripts/demo_fleet.sh $(BUILD)/bin
+
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+test-ansible:
+	@scripts/setup.sh ansible-core
+	@cmake --preset release >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target stc stvm
+	@ctest --test-dir $(BUILD) --output-on-failure -R '^cli_ansible'
 
 # TESTS: which of them, as a regular expression; EXCEPT: without these.
 TESTS :=

@@ -23,7 +23,10 @@ foreach(package stc stvm)
 endforeach()
 install(FILES README.md DESTINATION ${docs}/stc COMPONENT stc)
 install(DIRECTORY docs/ DESTINATION ${docs}/stc COMPONENT stc PATTERN adr EXCLUDE)
-install(DIRECTORY examples DESTINATION ${docs}/stc COMPONENT stc)
+install(DIRECTORY examples DESTINATION ${docs}/stc COMPONENT stc USE_SOURCE_PERMISSIONS)
+# Where Ansible looks for modules by itself, below /usr.
+install(FILES ansible/stvm_change.py DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/ansible/plugins/modules
+        COMPONENT stc)
 install(FILES docs/RUNNING.md docs/SECURITY.md docs/IO.md DESTINATION ${docs}/stvm COMPONENT stvm)
 
 foreach(tool stc stvm)

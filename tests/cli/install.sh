@@ -11,6 +11,9 @@ runs_line() {
   installed=$root/usr/bin
   examples=$root/usr/share/doc/stc/examples
   state=$work/$(basename "$root").state
+  [ -x "$examples/fleet/run.sh" ] || fail "the fleet to try cannot be run"
+  # Ansible finds it there without being told, below /usr.
+  [ -e "$root/usr/share/ansible/plugins/modules/stvm_change.py" ] || fail "no module of Ansible"
   expect 0 "$installed/stc" build "$examples/bottling_line" -o "$root/line.img"
   # As the unit does it, but for the places.
   grep -q '^ExecStart=/usr/bin/stvm serve --seccomp --dir /var/lib/stvm/%i --first /etc/stvm/%i.img$' \
