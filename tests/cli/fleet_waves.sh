@@ -53,6 +53,11 @@ expect 2 roll
 said 'cannot ask for confirmation'
 expect 2 stvm fleet roll x.fleet --dir one --yes
 said 'from --fleet FILE'
+# Units that start one after the other are no trial that one condition can watch.
+expect 0 stc fleet one.st two.st -o each.fleet --start each
+expect 2 stvm fleet roll each.fleet --fleet fleet.toml --yes --allow-overrun
+said 'R0504.*make it without --start each'
+[ ! -e each.fleet.plan ] || fail "a plan of what is refused"
 sed 's/Main.errors <=/Main.error <=/' fleet.toml >other.toml
 expect 7 stvm fleet roll x.fleet --fleet other.toml --yes --allow-overrun
 said 'R0401'
