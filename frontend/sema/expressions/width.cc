@@ -25,15 +25,25 @@ ir::TypeId computed_type(const Sema& sema, const Note& note) {
   return sema.program.types.elementary(ir::Kind::kDint);
 }
 
+namespace {
+
+// Not SINT#-1, and not SINT#16#FF either.
+bool is_positive_literal(const Sema& sema, const Expr& expr, ir::Scalar scalar) {
+  if (expr.kind != ExprKind::kLiteral) return false;
+  const Literal& literal = sema.tree.literals[expr.number];
+  return !literal.negative && static_cast<Wide>(literal.integer) <= limits_of(scalar).high;
+}
+
+}  // namespace
+
 Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& left,
                     const Note& right) {
   if (note.width != Width::kWide || left.width == Width::kWide || right.width == Width::kWide) {
     return note;
   }
-  // A literal has its sign outside.
-  const bool positive = sema.tree[expr.right].kind == ExprKind::kLiteral;
-  const bool fits = expr.binary == BinaryOp::kMod || positive ||
-                    !ir::is_signed(sema.program.types.scalar(note.type));
+  const ir::Scalar scalar = sema.program.types.scalar(note.type);
+  const bool fits = expr.binary == BinaryOp::kMod || !ir::is_signed(scalar) ||
+                    is_positive_literal(sema, sema.tree[expr.right], scalar);
   if (fits) note.width = Width::kOwn;
   return note;
 }
