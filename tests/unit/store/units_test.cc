@@ -276,21 +276,30 @@ TEST(Units, E06_AControllerSaysWhatItIsAndCanDo) {
   EXPECT_NE(facts_text({}, plc.status()).find("of an older version"), std::string::npos);
 }
 
-// The longest names that there are: an edit stays one message, and says how many there were.
+// The longest names that there are: an edit stays one message, and says how many there were. What
+// has another type has both of them in its row.
 TEST(Edits, D3_AnEditWithLongNamesIsOneMessage) {
-  PumpPlc rig;
   constexpr size_t kVariables = 300;
-  std::string variables;
-  for (size_t i = 0; i < kVariables; ++i) {
-    const std::string number = std::to_string(i);
-    const size_t left = base::kMaxIdentifier - 1 - number.size();
-    variables += "v" + number + std::string(left, 'x') + " : INT; ";
-  }
-  ASSERT_TRUE(rig.plc.change(pumps("2", variables.c_str())).ok());
-  const std::vector<TrialEdit> edits = edits_of(rig.plc);
+  const auto longest = [](const std::string& name) {
+    return name + std::string(base::kMaxIdentifier - name.size(), 'x');
+  };
+  const auto pumps_with = [&](const std::string& type, const std::string& is) {
+    std::string variables;
+    for (size_t i = 0; i < kVariables; ++i) {
+      variables += longest("v" + std::to_string(i) + "_") + " : " + longest(type) + "; ";
+    }
+    return "TYPE " + longest(type) + " : STRUCT i : " + is + "; END_STRUCT END_TYPE\n" +
+           pumps("1", variables);
+  };
+  sim::SimStorage disk;
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot(pumps_with("Before", "INT")).ok());
+  ASSERT_TRUE(plc.change(pumps_with("After", "DINT")).ok());
+  const std::vector<TrialEdit> edits = edits_of(plc);
   ASSERT_EQ(edits.size(), 1u);
   EXPECT_EQ(edits[0].variable_count, kVariables);
   EXPECT_GT(edits[0].variables.size(), 50u);
+  EXPECT_LT(edits[0].variables.size(), 200u) << "as many as fit";
   EXPECT_LT(encode(EditPage{0, edits}).size(), vm::kMaxMessageBytes / 4);
 }
 
