@@ -16,6 +16,7 @@ need python3 python3
 [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
 need mbpoll mbpoll
 [ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
+[ -e /usr/include/openssl/evp.h ] || missing="$missing libssl-dev"
 for package in "$@"; do  # extra packages of one make target
   dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
 done

@@ -138,6 +138,11 @@ base::Result<Package> plans_for(const EncodedImage& from, const EncodedImage& to
 
 }  // namespace
 
+bool has_package_magic(base::ByteSpan bytes) {
+  ByteReader in(bytes);
+  return in.u32() == kMagic;
+}
+
 base::Bytes encode(const Package& package) {
   const base::Bytes commands = encode_commands(package);
   const auto [layout, program] = parts_of(package.image);

@@ -18,6 +18,8 @@ struct Package {
   Plan inverse;
 };
 
+inline constexpr size_t kPackageMagicBytes = 4;
+bool has_package_magic(base::ByteSpan bytes);
 base::Bytes encode(const Package& package);
 // The package without what the base has too: it can be decoded beside the base only.
 base::Bytes encode_short(const Package& package, base::ByteSpan base_image);

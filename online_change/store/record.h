@@ -17,7 +17,7 @@ inline constexpr uint32_t kSectorBytes = 512;  // what a disk writes at once, an
 // Nothing writes so often; a record beyond it is not one of ours.
 inline constexpr uint64_t kLastSequence = uint64_t{1} << 62;
 
-enum class RecordKind : uint32_t { kControl = 1, kImage = 2, kRetain = 3, kEdits = 4 };
+enum class RecordKind : uint32_t { kControl = 1, kImage = 2, kRetain = 3, kEdits = 4, kTrust = 5 };
 
 enum class RecordState : uint8_t {
   kEmpty,       // never written

@@ -28,6 +28,7 @@
 #include "online_change/store/edits_record.h"
 #include "online_change/store/journal.h"
 #include "online_change/store/retain_record.h"
+#include "online_change/store/trust_record.h"
 
 namespace online_change {
 
@@ -41,6 +42,7 @@ inline constexpr const char* kJournalFile = "journal";
 inline constexpr const char* kTrapsFile = "traps";  // Kept::kOften
 inline constexpr const char* kBeforeFile = "before";
 inline constexpr const char* kEditsFile = "edits";
+inline constexpr const char* kTrustFile = "trust";
 
 struct StoreSizes {
   uint64_t image_bytes = 1u << 20;  // to begin with: a longer image makes its slot longer
@@ -112,6 +114,10 @@ class Store {
   // The edits on trial, oldest first. A cut leaves the ones that were kept before, or these.
   base::Status keep_edits(const std::vector<StoredEdit>& edits);
   base::Result<std::vector<StoredEdit>> edits() const;
+  // What a controller with keys must not forget (trust_record.h); an empty one where there never
+  // was any. kStorageFailed: it cannot be read, or is damaged.
+  base::Status keep_trust(const TrustRecord& record);
+  base::Result<TrustRecord> trust() const;
   base::Status end_trial();
   // What is on trial boots from now on.
   base::Status accept();

@@ -2,6 +2,7 @@
 
 #include "ir/bytecode/verify.h"
 #include "tools/common/files.h"
+#include "tools/common/signed_content.h"
 #include "tools/common/table.h"
 
 namespace tools {
@@ -41,7 +42,7 @@ std::vector<online_change::TableEdit> own_table_edits(const FleetParts& parts,
 }
 
 base::Result<OpenedFleetFile> open_fleet_file(const std::string& path) {
-  base::Result<base::Bytes> bytes = read_bytes(path);
+  base::Result<base::Bytes> bytes = read_content(path);
   if (!bytes.ok()) return bytes.error();
   base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
   if (!file.ok()) return file.error();

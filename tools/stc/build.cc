@@ -9,6 +9,7 @@
 #include "ir/program/verify.h"
 #include "linker/link.h"
 #include "tools/common/files.h"
+#include "tools/common/signed_content.h"
 #include "tools/stc/embed.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/memory_budget.h"
@@ -165,7 +166,7 @@ base::Result<TestVersion> build_tests(const Project& project, base::Diagnostics&
 }
 
 base::Result<Version> read_image(const std::string& path) {
-  base::Result<base::Bytes> bytes = tools::read_bytes(path);
+  base::Result<base::Bytes> bytes = tools::read_content(path);
   if (!bytes.ok()) return bytes.error();
   expect_input(bytes->size());
   const base::Result<ir::VerifiedImage> image = ir::verify(*bytes);
@@ -176,6 +177,7 @@ base::Result<Version> read_image(const std::string& path) {
 }
 
 bool is_image(const std::string& path) {
+  if (tools::is_signed_as(path, online_change::SignedKind::kImage)) return true;
   base::Result<base::Bytes> first = tools::read_first(path, ir::kImageMagic.size());
   return first.ok() && ir::has_image_magic(*first);
 }

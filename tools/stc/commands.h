@@ -21,5 +21,6 @@ extern const Entry kDump;
 extern const Entry kSource;
 extern const Entry kXref;
 extern const Entry kExplain;
+extern const Entry kKey;
 
 }  // namespace stc

@@ -5,11 +5,13 @@
 #include "online_change/package/fleet_file.h"
 #include "online_change/plan/table_edits.h"
 #include "tools/common/files.h"
+#include "tools/common/signed_content.h"
 
 namespace stc {
 
 bool is_fleet_file(const std::string& path) {
   if (tools::is_folder(path)) return false;
+  if (tools::is_signed_as(path, online_change::SignedKind::kFleet)) return true;
   base::Result<base::Bytes> first = tools::read_first(path, online_change::kFleetMagic.size());
   return first.ok() && online_change::has_fleet_magic(*first);
 }
@@ -20,7 +22,7 @@ base::Result<Version> edited_version(const std::string& path, const BuildOptions
         base::Refusal::kUsage,
         "`" + path + "` is an edit of a running program: there is none to make it in"};
   }
-  base::Result<base::Bytes> bytes = tools::read_bytes(path);
+  base::Result<base::Bytes> bytes = tools::read_content(path);
   if (!bytes.ok()) return bytes.error();
   base::Result<online_change::FleetFile> file = online_change::decode_fleet_file(*bytes);
   if (!file.ok()) return file.error();

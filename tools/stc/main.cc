@@ -21,11 +21,14 @@ std::string dialects() {
 }
 
 std::vector<std::string> adapters() {
+  std::vector<std::string> out;
 #ifdef STC_HAS_XML
-  return {"xml", "plcopen", "twincat"};
-#else
-  return {};
+  out = {"xml", "plcopen", "twincat"};
 #endif
+#ifdef STC_HAS_KEYS
+  out.push_back("keys");
+#endif
+  return out;
 }
 
 }  // namespace
@@ -36,7 +39,7 @@ int main(int argc, char** argv) {
   const tools::Entry* const entries[] = {&stc::kCheck,  &stc::kBuild,   &stc::kTest,  &stc::kFormat,
                                          &stc::kDiff,   &stc::kPackage, &stc::kFleet, &stc::kImport,
                                          &stc::kExport, &stc::kDraw,    &stc::kDump,  &stc::kSource,
-                                         &stc::kXref,   &stc::kExplain};
+                                         &stc::kXref,   &stc::kExplain, &stc::kKey};
   const tools::Tool tool{"stc",
                          "Compiles IEC 61131-3 programs to images for stvm.",
                          entries,

@@ -2,9 +2,11 @@
 // show every variable's fate, ask, switch.
 #include <cstdio>
 
+#include "online_change/package/package.h"
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
+#include "tools/common/signed_content.h"
 #include "tools/stvm/change_follow.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
@@ -30,12 +32,22 @@ constexpr tools::OptionRow kRevertOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_SWI
 constexpr tools::Command kRevertCommand{
     "revert",       "", "Changes to the program that ran before the last accepted change.",
     kRevertOptions, 0,  0};
-constexpr tools::Command kChangeCommand{"change", "SOURCES...|IMAGE|FLEET-FILE",
+constexpr tools::Command kChangeCommand{"change", "SOURCES...|IMAGE|PACKAGE|FLEET-FILE",
                                         "Changes the running program without stopping it.",
                                         kChangeOptions, 1};
 
+// Made apart, and signed or not.
+bool is_package(const std::string& path) {
+  if (tools::is_signed_as(path, online_change::SignedKind::kPackage)) return true;
+  if (!tools::is_file(path)) return false;
+  base::Result<base::Bytes> first = tools::read_first(path, online_change::kPackageMagicBytes);
+  return first.ok() && online_change::has_package_magic(*first);
+}
+
 base::Result<base::Bytes> package_of(const tools::Options& options, bool restricted,
                                      ControllerClient& client) {
+  const std::vector<std::string>& paths = options.arguments();
+  if (paths.size() == 1 && is_package(paths[0])) return tools::read_bytes(paths[0]);
   base::Result<base::Bytes> running = client.image();
   if (!running.ok()) return running.error();
   return make_package(sources_of(options), {restricted, options.has("--matching")}, *running);

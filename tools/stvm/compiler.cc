@@ -8,6 +8,7 @@
 #include "tools/common/files.h"
 #include "tools/common/heap.h"
 #include "tools/common/option_rows.h"
+#include "tools/common/signed_content.h"
 
 namespace stvm {
 
@@ -26,7 +27,8 @@ bool is_image(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
   base::Result<base::Bytes> first = tools::read_first(path, ir::kImageMagic.size());
-  return first.ok() && ir::has_image_magic(*first);
+  if (first.ok() && ir::has_image_magic(*first)) return true;
+  return tools::is_signed_as(path, online_change::SignedKind::kImage);
 }
 
 base::Status check_compile_options(const Sources& sources) {
@@ -77,7 +79,7 @@ base::Result<std::vector<ir::VerifiedImage>> load_programs(const Sources& source
   }
   std::vector<ir::VerifiedImage> images;
   for (const std::string& path : paths) {
-    base::Result<base::Bytes> bytes = tools::read_bytes(path);
+    base::Result<base::Bytes> bytes = tools::read_content(path);
     if (!bytes.ok()) return bytes.error();
     base::Result<ir::VerifiedImage> image = ir::verify(std::move(*bytes));
     if (!image.ok()) return image.error();

@@ -184,7 +184,9 @@ base::Status ControllerService::prepare_switch(const vm::Request& request, Trial
   base::Status taken = arm_in_time(allow_loss, allow_overrun, ready);
   if (!taken.ok()) return not_switched(taken.error());
   if (!ready.ok()) return not_switched(ready.error());
-  if (base::Status stored = store_trial(next); !stored.ok()) {
+  base::Status stored = admission_.take(signer_, wall_time_());
+  if (stored.ok()) stored = store_trial(next);
+  if (!stored.ok()) {
     change_.cancel();
     return not_switched(stored.error());
   }
@@ -215,6 +217,7 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   if (!redone_.empty()) trial.switch_flags |= undone_.back().switch_flags & vm::kLastEditBoots;
   if (guard_.is_staged()) trial.switch_flags &= ~vm::kLastEditBoots;  // X6-08
   trial.taken_out = taken_out_;
+  trial.signer = signer_;
   trial.edit.name = redone_.empty() ? "E" + std::to_string(edits_made_ + 1) : redone_;
   base::Status ready = prepare_switch(request, trial, faulted, allow_overrun);
   if (!ready.ok()) return ready.error();
@@ -316,7 +319,8 @@ void ControllerService::note_edit(Trial trial, const online_change::SwitchReport
   switched_cycle_ = report.cycle_before;
   note_units("switched", report.cycle_after);
   note_switch(online_change::Event::kSwitched, previous()->digest(), report, predicted_ns,
-              "edit " + trials_.back().edit.name + (note_.empty() ? "" : ", " + note_));
+              "edit " + trials_.back().edit.name + (note_.empty() ? "" : ", " + note_) +
+                  (trials_.back().signer ? ", signed by " + trials_.back().signer->by : ""));
   if (last_edit_boots()) complain(keep_edits());  // with the values of the boundary
 }
 

@@ -42,11 +42,14 @@ base::Result<base::Bytes> ControllerService::switch_to_first() {
   if (!taken.ok()) return not_switched(taken.error());
   if (!ready.ok()) return not_switched(ready.error());
   base::Bytes retained;
-  if (base::Status stored = store_first(retained); !stored.ok()) {
+  base::Status stored = admission_.take(signer_, wall_time_());
+  if (stored.ok()) stored = store_first(retained);
+  if (!stored.ok()) {
     change_.cancel();
     return not_switched(stored.error());
   }
   online_change::JournalEntry installed = entry(online_change::Event::kInstalled);
+  installed.text = signer_text(signer_);
   std::optional<base::Result<online_change::SwitchReport>> report;
   online_change::Snapshot after = empty_snapshot();
   int64_t done_ns = 0;

@@ -31,6 +31,7 @@ ControllerService::ControllerService(vm::Controller& controller, vm::Clock& cloc
       start_(std::move(start)),
       wall_time_(std::move(wall_time)),
       keeper_(controller, store, wall_time_),
+      admission_(start_.trust),
       change_(controller),
       units_(controller, {controller.cycles(), wall_time_(), start_.who, "started"}),
       guard_(controller, clock),

@@ -13,6 +13,7 @@
 #include "online_change/plan/every_fate.h"
 #include "online_change/store/boot.h"
 #include "online_change/store/retain_keeper.h"
+#include "tools/stvm/admission.h"
 #include "tools/stvm/aside_writer.h"
 #include "tools/stvm/event_log.h"
 #include "tools/stvm/fate_message.h"
@@ -34,6 +35,7 @@ struct StartReport {
   std::vector<std::string> alarms;
   std::string fault = {};  // of Boot
   std::string who = {};    // started it
+  Trust* trust = nullptr;  // keys of the controller; null: it has none
 };
 // What finds too little time before the next cycle is tried again so much later.
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
@@ -66,9 +68,10 @@ class ControllerService : public vm::Service {
   // From now on an image that is staged is written to the store by a thread of its own, beside its
   // verification: the storage must allow that threads use different files at once.
   void store_beside();
-  void asked_by(const std::string& user, uint64_t session) override {
+  void asked_by(const std::string& user, uint64_t session, bool bridged = false) override {
     who_ = user;
     session_ = session;
+    local_ = !bridged;
   }
   // What was uploaded over it, and what the pages of its reports are of, is given back.
   void ended(uint64_t session) override;
@@ -118,6 +121,7 @@ class ControllerService : public vm::Service {
     online_change::Snapshot retained;  // of `before`, at the switch
     std::string taken_out = {};        // the edit whose work it takes back; "": none
     uint64_t chain = 0;                // steps of one edit have the same (E-26); 0: it is none
+    Signer signer = {};                // of its package, when it was brought
   };
   const ir::VerifiedImage* previous() const {
     return trials_.empty() ? nullptr : &trials_.back().before;
@@ -159,7 +163,8 @@ class ControllerService : public vm::Service {
   // kBadHash, kFault.
   base::Status check_upload(const vm::Request& request, base::ByteSpan package) const;
   Answer stage_package(base::Bytes package, uint32_t flags, const std::string& unless,
-                       const std::string& redone, const std::string& taken_out);
+                       const std::string& redone, const std::string& taken_out,
+                       const Signer& signer);
   Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy,
                          uint32_t flags, const std::string& taken_out);
   double pace();  // of this machine (online_change/apply/pace.h)
@@ -295,6 +300,8 @@ class ControllerService : public vm::Service {
   std::string who_;
   std::string changed_by_;  // who made the newest edition
   uint64_t session_ = 0;
+  bool local_ = true;   // nobody asks over a bridge
+  Admission admission_;
   uint64_t more_of_ = 0;  // session that brings an edit in several steps; 0: none does
   uint64_t chains_ = 0;   // such edits until now
   online_change::Change change_;
@@ -312,6 +319,7 @@ class ControllerService : public vm::Service {
   base::Bytes staged_package_;
   uint32_t staged_flags_ = 0;
   base::Digest staged_digest_{};  // of the package that was sent; zeros: brought again by redo
+  Signer signer_;       // of what is staged
   std::string redone_;  // name of the edit that is staged again; "": a new one
   double pace_ = 0;        // 0: not measured yet
   std::string taken_out_;  // the edit on trial whose work it takes back; "": none

@@ -9,6 +9,8 @@
 
 namespace stvm {
 
+using online_change::Event;
+
 static constexpr size_t kMostNote = 160;  // bytes; the journal keeps some more
 
 // One at a time: whoever begins one ends that of another connection, which is told so.
@@ -70,9 +72,21 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   if (upload_of_ != session_) return others_upload();
   base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
+  if (auto revoked = admission_.revoke(package, wall_time_())) {
+    if (!revoked->ok()) note_done(Event::kRefused, who_, base::to_string(revoked->error()));
+    if (!revoked->ok()) return revoked->error();
+    note_done(Event::kRevoked, who_, **revoked);
+    return vm::encode(vm::StagedAnswer{edition_});
+  }
+  const base::Result<Signer> signer = admission_.open(package, local_, wall_time_());
+  if (!signer.ok()) {
+    note_done(Event::kRefused, who_, base::to_string(signer.error()));
+    return signer.error();
+  }
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
   base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {},
-                                                  request.names.size() > 2 ? request.names[2] : "");
+                                                  request.names.size() > 2 ? request.names[2] : "",
+                                                  *signer);
   if (!staged.ok()) return staged;
   staged_digest_ = request.digest;
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;
@@ -85,7 +99,8 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
 base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, uint32_t flags,
                                                            const std::string& unless,
                                                            const std::string& redone,
-                                                           const std::string& taken_out) {
+                                                           const std::string& taken_out,
+                                                           const Signer& signer) {
   const bool standby = (flags & vm::kByStandby) != 0;
   const auto strategy =
       standby ? online_change::Strategy::kStandby : online_change::Strategy::kInPlace;
@@ -132,10 +147,12 @@ base::Result<base::Bytes> ControllerService::stage_package(base::Bytes package, 
   staged_package_ = std::move(package);
   staged_flags_ = flags;
   redone_ = redone;
+  signer_ = signer;
   if (!rehearsal) {
     online_change::JournalEntry done = entry(online_change::Event::kStaged);
     done.counts = change_.plan().counts;
     done.predicted_ns = change_.predicted_pause_ns();
+    done.text = signer_text(signer_);
     store_.note(std::move(done));
     changed_by_ = who_;
     ++edition_;
@@ -255,6 +272,7 @@ void ControllerService::forget_staged() {
   staged_package_ = base::Bytes();
   staged_digest_ = {};
   redone_.clear();
+  signer_.reset();
   taken_out_.clear();
   unless_ = {};
   note_.clear();

@@ -143,7 +143,12 @@ base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
     return base::Error{base::Refusal::kStaleBase,
                        "the program has been changed since " + next.edit.name + " was undone"};
   }
-  return stage_package(next.package, next.flags, {}, next.edit.name, next.taken_out);
+  const base::Result<Signer> signer = admission_.bring_again(next.signer, local_, wall_time_());
+  if (!signer.ok()) {
+    note_done(online_change::Event::kRefused, who_, base::to_string(signer.error()));
+    return signer.error();
+  }
+  return stage_package(next.package, next.flags, {}, next.edit.name, next.taken_out, *signer);
 }
 
 online_change::TakenOut ControllerService::trial_taken_out(const std::string& edit) const {

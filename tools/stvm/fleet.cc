@@ -111,6 +111,8 @@ base::Result<FleetRun> read_run(const tools::Options& options) {
   if (more > 1) return fleet_usage(run.verb + " takes one fleet file");
   if (more == 0 && run.verb != "status") return fleet_usage(run.verb + " needs a fleet file");
   if (more == 1) {
+    base::Status trusted = check_fleet_signature(options.arguments()[1], options);
+    if (!trusted.ok()) return trusted.error();
     base::Result<FleetEdit> edit = read_fleet_edit(options.arguments()[1]);
     if (!edit.ok()) return edit.error();
     run.edit = std::move(*edit);

@@ -20,6 +20,7 @@ constexpr tools::OptionRow kFleetOptions[] = {
     {"--timeout", "SECONDS", "give up a controller that does not answer for so long (default 60)"},
     {"--one-by-one", nullptr, "wait until a controller answers, do it, and wait for the next one"},
     STVM_SWITCH_OPTIONS,
+    {"--trust", "KEYS", "take only a fleet file that a key of this file has signed"},
     tools::kMatchingOption,
     {"--confirm-each-wave", nullptr,
      "ask before each wave of a roll-out, not only before the first"},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/common/fleet_parts.h"
+#include "tools/common/options.h"
 
 namespace stvm {
 
@@ -20,6 +21,8 @@ struct FleetEdit {
 
 // Both versions are verified.
 base::Result<FleetEdit> read_fleet_edit(const std::string& path);
+// With `--trust KEYS` it must be signed by one of them, says `stc key verify`.
+base::Status check_fleet_signature(const std::string& path, const tools::Options& options);
 // "fleet file 9c4c6cbc5a09"
 std::string fleet_note(const base::Digest& digest);
 // The note of a file, where `stvm change` is given one; "": it is no fleet file.

@@ -29,6 +29,7 @@ SwitchOptions FleetRoll::how(size_t member) const {
   how.stage_flags = plan_.stage_flags;
   how.switch_flags = plan_.switch_flags;
   if (plan_.members[member].member.allow_loss) how.switch_flags |= vm::kAllowLoss;
+  how.sign = access_.sign;
   how.ask = false;
   how.json = true;
   how.note = base::joined({fleet_note(edit_.digest), ", ", note(wave)});

@@ -179,6 +179,8 @@ base::Result<RollJob> read_new_job(const tools::Options& options) {
   const std::string& file = options.arguments()[1];
   base::Result<uint32_t> seconds = patience(options);
   if (!seconds.ok()) return seconds.error();
+  base::Status trusted = check_fleet_signature(file, options);
+  if (!trusted.ok()) return trusted.error();
   base::Result<FleetEdit> edit = read_fleet_edit(file);
   if (!edit.ok()) return edit.error();
   base::Result<SwitchOptions> how = switch_options(options, {file});
@@ -201,6 +203,7 @@ base::Result<RollJob> read_new_job(const tools::Options& options) {
   job.ask = how->ask;
   job.json = how->json;
   if (base::Status opened = open_edit(job, *seconds); !opened.ok()) return opened.error();
+  job.access.sign = options.text("--sign");
   return job;
 }
 
@@ -264,6 +267,7 @@ base::Result<RollJob> read_old_job(const tools::Options& options) {
   base::Result<uint32_t> seconds = patience(options);
   if (!seconds.ok()) return seconds.error();
   if (base::Status opened = open_edit(job, *seconds); !opened.ok()) return opened.error();
+  job.access.sign = options.text("--sign");
   return job;
 }
 

@@ -22,6 +22,7 @@ struct FleetAccess {
   std::function<base::Result<base::Bytes>(const base::Bytes& running, size_t step)> package;
   // One edit of several on trial.
   std::function<decltype(take_out)> take_back = take_out;
+  std::string sign = {};  // of a roll-out: SwitchOptions::sign
 };
 
 // What is said on the way, and the person at the terminal, who may be done with all of it. Quiet:

@@ -7,11 +7,14 @@
 namespace {
 
 std::vector<std::string> adapters() {
+  return {
 #ifdef STC_HAS_MODBUS
-  return {"modbus"};
-#else
-  return {};
+      "modbus",
 #endif
+#ifdef STC_HAS_KEYS
+      "keys",
+#endif
+  };
 }
 
 }  // namespace

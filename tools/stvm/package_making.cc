@@ -22,4 +22,15 @@ base::Result<base::Bytes> make_package(const Sources& sources, const PackageOpti
   return tools::read_bytes(package_file);
 }
 
+base::Result<base::Bytes> sign_package(base::ByteSpan package, const std::string& key_file) {
+  base::Result<tools::TemporaryFolder> folder = tools::TemporaryFolder::make();
+  if (!folder.ok()) return folder.error();
+  const std::string file = folder->file("change.pkg");
+  base::Status done = tools::write_file(file, package);
+  if (!done.ok()) return done.error();
+  done = tools::run_beside("stc", {"key", "sign", file, "--key", key_file, "--days", "1", "-o", file});
+  if (!done.ok()) return done.error();
+  return tools::read_bytes(file);
+}
+
 }  // namespace stvm

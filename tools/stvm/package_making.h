@@ -17,4 +17,7 @@ struct PackageOptions {
 base::Result<base::Bytes> make_package(const Sources& sources, const PackageOptions& options,
                                        base::ByteSpan running);
 
+// Signed by the private key in that file, for one day (F-03).
+base::Result<base::Bytes> sign_package(base::ByteSpan package, const std::string& key_file);
+
 }  // namespace stvm

@@ -10,6 +10,8 @@
 
 #include "tools/common/change_settings.h"
 #include "tools/common/exit.h"
+#include "tools/common/files.h"
+#include "tools/common/signed_content.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/device_drivers.h"
 #include "tools/stvm/log_output.h"
@@ -41,6 +43,7 @@ constexpr tools::OptionRow kServeOptions[] = {
     {"--cpu", "N", "keep the control thread on this processor"},
     {"--lock-memory", nullptr, "keep all memory in RAM, and touch it before the first scan"},
     {"--seccomp", nullptr, "threads may only make the system calls that docs/RUNNING.md names"},
+    {"--trust", "KEYS", "take only what a key of this file has signed (docs/KEYS.md)"},
     tools::kRecordOption,
     {"--virtual-time", nullptr, "cycles as fast as they can run, instead of real time"},
     STVM_DEVICE_OPTION,
@@ -53,14 +56,18 @@ constexpr tools::Command kServeCommand{
     kServeOptions};
 
 using Served = std::vector<std::unique_ptr<ServedResource>>;
-using Output = std::shared_ptr<LogOutput>;
+// What each resource gets: where its events go, and the keys.
+struct Output {
+  std::shared_ptr<LogOutput> log;
+  StartTrust trust;
+};
 using Resource = vm::GlobalExchange::Resource;
 
 base::Status open_one(const std::string& directory, const std::string& name,
                       const std::optional<ir::VerifiedImage>& given, bool create, Served& served,
                       const Output& output) {
   const std::string folder = name.empty() ? directory : directory + "/" + name;
-  auto opened = ServedResource::open(folder, name, given, create, output);
+  auto opened = ServedResource::open(folder, name, given, create, output.log, output.trust);
   if (!opened.ok()) return opened.error();
   served.push_back(std::move(*opened));
   return base::Ok{};
@@ -138,6 +145,22 @@ base::Result<Served> open_all(const tools::Options& options, const Output& outpu
   base::Result<Served> stored = open_stored(directory, false, output);
   if (stored.ok() || stored.error().refusal != base::Refusal::kFileNotFound) return stored;
   return open_programs(options, {options.text("--first")}, directory, output);
+}
+
+// Of the images among these.
+base::Result<StartTrust> trust_of(const tools::Options& options) {
+  StartTrust out{options.text("--trust")};
+  std::vector<std::string> paths = options.arguments();
+  if (options.has("--first")) paths.push_back(options.text("--first"));
+  for (const std::string& path : paths) {
+    if (out.path.empty() || !tools::is_signed_as(path, online_change::SignedKind::kImage)) continue;
+    base::Result<base::Bytes> bytes = tools::read_bytes(path);
+    if (!bytes.ok()) return bytes.error();
+    base::Result<online_change::SignedFile> file = online_change::open_signed(*bytes);
+    if (!file.ok()) return base::Error{file.error().refusal, path + ": " + file.error().text};
+    out.images.emplace(file->statement.content, std::move(*file));
+  }
+  return out;
 }
 
 base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
@@ -270,7 +293,9 @@ base::Status serve(const tools::Options& options) {
   vm::VirtualClock virtual_clock;
   std::unique_ptr<vm::GlobalExchange> exchange;
   const auto output = std::make_shared<LogOutput>(STDERR_FILENO, is_journal());
-  base::Result<Served> served = open_all(options, output);
+  base::Result<StartTrust> trust = trust_of(options);
+  if (!trust.ok()) return trust.error();
+  base::Result<Served> served = open_all(options, {output, std::move(*trust)});
   if (!served.ok()) return served.error();
   // After the compiler, which is a program of its own, and before all threads.
   if (real_time->confined) {

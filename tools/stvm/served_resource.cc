@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "base/sha256.h"
 #include "tools/common/files.h"
 #include "tools/common/version.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/key_trust.h"
 
 namespace stvm {
 namespace {
@@ -45,10 +47,35 @@ void ServedResource::note(online_change::Event event, std::string text) {
   store_.note(std::move(entry));
 }
 
+// What boots is not asked about: it is in the state folder, which is trusted, and so the same
+// command line starts the controller again, whatever has expired.
+base::Status ServedResource::admit(const std::optional<ir::VerifiedImage>& given,
+                                   const StartTrust& trust) {
+  if (trust.path.empty()) return base::Ok{};
+  auto made = make_trust(trust.path, store_);
+  if (!made.ok()) return made.error();
+  trust_ = std::move(*made);
+  if (!given || store_.boots() == given->digest()) return base::Ok{};
+  const auto found = trust.images.find(base::sha256(given->encoded()));
+  if (found == trust.images.end()) {
+    const base::Error unsigned_image{base::Refusal::kUnsigned,
+                                     "nobody has signed the image to start with"};
+    note(Event::kRefused, base::to_string(unsigned_image));
+    return unsigned_image;
+  }
+  const int64_t now_s = wall_time_ns() / 1'000'000'000;
+  base::Result<Signed> signer =
+      trust_->check(found->second, online_change::SignedKind::kImage, now_s);
+  base::Status taken = signer.ok() ? trust_->take(*signer, now_s) : base::Status(signer.error());
+  note(taken.ok() ? Event::kStaged : Event::kRefused,
+       taken.ok() ? signer_text(*signer) : base::to_string(taken.error()));
+  return taken;
+}
+
 base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
     const std::string& directory, const std::string& name,
     const std::optional<ir::VerifiedImage>& given, bool create,
-    const std::shared_ptr<LogOutput>& output) {
+    const std::shared_ptr<LogOutput>& output, const StartTrust& trust) {
   const bool may_make = given || create;
   const bool unused = tools::is_folder(directory) && !holds_program(directory);
   if (unused && !may_make) return empty(directory);
@@ -60,6 +87,9 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
   const bool is_new = folder->is_new();
   auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder), output);
   if (is_new) out->note(Event::kNewFolder, "new state folder: " + out->folder_.path());
+  if (base::Status admitted = out->admit(given, trust); !admitted.ok()) {
+    return base::Error{admitted.error().refusal, directory + ": " + admitted.error().text};
+  }
   auto boot = online_change::boot(out->store_, given, kWho, wall_time_ns(), create);
   if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) return empty(directory);
   if (!boot.ok()) {
@@ -85,7 +115,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   running_ = std::move(*running);
   service_ = std::make_unique<ControllerService>(
       controller(), clock, store_, mailbox_,
-      StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho});
+      StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho, trust_.get()});
   service_->is_version(tools::kVersion);
   service_->resume(boot_->edits);
   service_->store_beside();

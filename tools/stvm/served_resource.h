@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,14 +18,21 @@
 
 namespace stvm {
 
+// What `stvm serve --trust` brings along.
+struct StartTrust {
+  std::string path;                                              // of the trust file; "": no keys
+  std::map<base::Digest, online_change::SignedFile> images = {};  // signed ones, by their content
+};
+
 class ServedResource {
  public:
   // Locks the folder and decides what runs: `given`, or what is stored there; with `create`,
   // nothing where nothing ever was. Notes what is wrong. kFileNotFound: nothing was ever stored.
+  // With keys, another image than the one that boots must be signed: what Trust says.
   static base::Result<std::unique_ptr<ServedResource>> open(
       const std::string& directory, const std::string& name,
       const std::optional<ir::VerifiedImage>& given, bool create,
-      const std::shared_ptr<LogOutput>& output);
+      const std::shared_ptr<LogOutput>& output, const StartTrust& trust);
   ServedResource(const std::string& directory, const std::string& name, StateFolder folder,
                  const std::shared_ptr<LogOutput>& output);
   ~ServedResource();
@@ -49,6 +57,7 @@ class ServedResource {
 
  private:
   void note(online_change::Event event, std::string text);
+  base::Status admit(const std::optional<ir::VerifiedImage>& given, const StartTrust& trust);
   void idle(const std::function<bool()>& stop, const std::function<void()>& alive);
 
   std::string directory_;
@@ -57,6 +66,7 @@ class ServedResource {
   vm::FileStorage storage_;
   online_change::Store store_;
   std::shared_ptr<EventLog> events_;  // threads of devices that hang may outlive this
+  std::unique_ptr<Trust> trust_;  // null: without keys
   std::optional<online_change::Boot> boot_;
   vm::Clock* clock_ = nullptr;
   bool virtual_time_ = false;

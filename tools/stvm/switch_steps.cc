@@ -10,6 +10,7 @@
 #include "tools/common/table.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/fate_view.h"
+#include "tools/stvm/package_making.h"
 #include "tools/stvm/question.h"
 #include "tools/stvm/switch_text.h"
 #include "vm/io/global_exchange.h"
@@ -160,6 +161,7 @@ base::Result<SwitchOptions> switch_options(const tools::Options& options,
   out.restricted = settings->restricted;
   out.health = options.text("--health", settings->health);
   out.unless = options.text("--unless", settings->unless);
+  out.sign = options.text("--sign");
   out.dry_run = options.has("--dry-run");
   if (out.dry_run) out.stage_flags |= vm::kRehearsal;
   out.all = options.has("--all");
@@ -180,6 +182,13 @@ base::Status check_no_trial(const vm::StatusReport& status) {
 
 base::Result<Outcome> bring(const SwitchOptions& options, ControllerClient& client,
                             base::ByteSpan package) {
+  base::Bytes with_signature;
+  if (!options.sign.empty()) {
+    base::Result<base::Bytes> done = sign_package(package, options.sign);
+    if (!done.ok()) return done.error();
+    with_signature = std::move(*done);
+    package = with_signature;
+  }
   base::Status staged =
       client.stage(package, options.stage_flags, options.unless, options.note, options.taken_out);
   if (!staged.ok()) return staged.error();

@@ -23,6 +23,7 @@ struct SwitchOptions {
   base::Bytes guard = {};     // conditions of its trial, as vm::Command::kGuard has them; none
   int64_t window_ms = 0;      // so long the controller looks at values before the switch
   std::string taken_out;      // the edit whose work it takes back
+  std::string sign = {};      // file of the key to sign it with; "": nobody signs it
   bool dry_run = false;
   bool all = false;  // a line for each variable
   bool wait = false;  // for the changes of others

@@ -20,6 +20,7 @@ constexpr tools::OptionRow kUndoOptions[] = {
     {"--only", nullptr, "take back this edit alone: those that were made later stay"},
     {"--allow-loss", nullptr, "with --only: even if live values are lost, as the report says"},
     {"--allow-overrun", nullptr, "with --only: even if a task may be delayed"},
+    {"--sign", "KEY", "with --only: sign it for a controller with keys"},
     {"--skip-exit", nullptr, "do not run FB_Exit of what goes: one that traps keeps the edit"},
     tools::kYesOption,
     tools::kDryRunOption,
@@ -179,6 +180,7 @@ base::Status undo_only(const tools::Options& options, ControllerClient& client,
         "go too, and can be brought again"};
   }
   SwitchOptions how;
+  how.sign = options.text("--sign");
   how.dry_run = options.has("--dry-run");
   if (how.dry_run) how.stage_flags |= vm::kRehearsal;
   how.ask = !options.has("--yes");

@@ -49,7 +49,7 @@ bool Connection::answer_next(Service& service) {
   if (!request) request = in.next();
   if (request) {
     bool keep_open = true;
-    service.asked_by(user, session);
+    service.asked_by(user, session, bridged);
     const base::Bytes answer = service.answer(*request, keep_open);
     put_answer(answer, keep_open);
     return true;

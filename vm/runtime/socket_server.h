@@ -21,8 +21,9 @@ class Service {
  public:
   virtual ~Service() = default;
   // Before each answer(): the user at the other end, by name or as a number, and over which
-  // connection.
-  virtual void asked_by(const std::string& /*user*/, uint64_t /*session*/) {}
+  // connection; `bridged`: from another machine.
+  virtual void asked_by(const std::string& /*user*/, uint64_t /*session*/,
+                        bool /*bridged*/ = false) {}
   // Nothing more comes over it; what was kept for it can go.
   virtual void ended(uint64_t /*session*/) {}
   // On the server's thread. `keep_open` false closes the connection after the answer.

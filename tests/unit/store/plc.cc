@@ -67,6 +67,7 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given, bool creat
   auto found = online_change::boot(*store_, given, "test", 1, create);
   if (!found.ok()) return found.error();
   boot_ = std::move(*found);
+  if (make_trust) trust_ = make_trust(*store_);
   vm::ControllerOptions options;
   options.halted = !boot_->fault.empty();
   auto controller = vm::Controller::start(boot_->image, options, clock_, io_, boot_->retained);
@@ -74,7 +75,8 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given, bool creat
   controller_ = std::move(*controller);
   service_ = std::make_unique<stvm::ControllerService>(
       *controller_, clock_, *store_, *this,
-      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault}, [] { return int64_t{2}; });
+      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, {}, trust_.get()},
+      [this] { return wall_ns; });
   service_->resume(boot_->edits);
   service_->asked_by("tester", 1);
   return base::Ok{};

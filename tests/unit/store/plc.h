@@ -46,6 +46,9 @@ class Plc : public vm::Boundary {
 
   // Asked at each boundary that a command needs; what is not kDone comes instead of its job.
   std::function<Outcome()> at_boundary;
+  // The keys that the next boot() starts it with; none at first.
+  std::function<std::unique_ptr<stvm::Trust>(online_change::Store&)> make_trust;
+  int64_t wall_ns = 2;  // since 1970
   // Called behind each job.
   std::function<void()> behind_job;
   // As in a replay: no cycle comes by itself.
@@ -79,6 +82,7 @@ class Plc : public vm::Boundary {
   Field io_;
   std::unique_ptr<online_change::Store> store_;
   std::optional<online_change::Boot> boot_;
+  std::unique_ptr<stvm::Trust> trust_;
   std::unique_ptr<vm::Controller> controller_;
   std::unique_ptr<stvm::ControllerService> service_;
 };
