@@ -27,7 +27,7 @@ install(DIRECTORY examples DESTINATION ${docs}/stc COMPONENT stc USE_SOURCE_PERM
 # Where Ansible looks for modules by itself, below /usr.
 install(FILES ansible/stvm_change.py DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/ansible/plugins/modules
         COMPONENT stc)
-install(FILES docs/RUNNING.md docs/SECURITY.md docs/IO.md DESTINATION ${docs}/stvm COMPONENT stvm)
+install(FILES docs/RUNNING.md docs/SECURITY.md docs/KEYS.md docs/IO.md DESTINATION ${docs}/stvm COMPONENT stvm)
 
 foreach(tool stc stvm)
   file(GLOB pages ${CMAKE_SOURCE_DIR}/share/man/man1/${tool}*.1)

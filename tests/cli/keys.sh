@@ -57,17 +57,16 @@ expect 7 stc key verify a.img --trust trust.toml
 said R0420
 expect 0 stvm run a.signed --scans 1 --virtual-time --print Main.n
 serve plc --trust trust.toml a.signed
-runs() { expect 0 stvm status --dir plc; said "running +.*$1"; }
-first=$(stvm status --dir plc --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/')
+running() { stvm status --dir plc --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/'; }
+first=$(running)
 
 # F-03: nothing unsigned, by no verb.
 none() {  # none CODE COMMAND...: refused so, and the same program runs.
-  code=$1
+  refusal=$1
   shift
   expect 7 "$@"
-  said "$code"
-  now=$(stvm status --dir plc --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/')
-  [ "$now" = "$first" ] || fail "another program runs after $*"
+  said "$refusal"
+  [ "$(running)" = "$first" ] || fail "another program runs after $*"
 }
 stc fleet a.st b.st -o b.fleet 2>/dev/null
 none R0420 stvm change b.st --dir plc --yes
@@ -100,17 +99,20 @@ none R0425 stvm change b.signed --dir plc --yes
 # Signed on the way: change, undo and redo, undo --only, revert.
 expect 0 stvm redo --dir plc --yes
 expect 0 stvm accept --dir plc
-none_now() { first=$(stvm status --dir plc --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/'); none "$@"; }
+none_now() {
+  first=$(running)
+  none "$@"
+}
 none_now R0420 stvm revert --dir plc --yes
 expect 0 stvm revert --dir plc --yes --sign office.key
 expect 0 stvm accept --dir plc
-expect 0 stvm fleet change b.fleet --dir plc --yes --sign office.key --trust trust.toml
-none_now 'R0420: .*b.fleet is not signed' \
-  stvm fleet undo b.fleet --dir plc --yes --trust trust.toml
-expect 0 stvm undo --dir plc --yes
+none_now 'R0420: b.fleet is not signed' \
+  stvm fleet change b.fleet --dir plc --yes --sign office.key --trust trust.toml
 stc key sign b.fleet --key office.key -o signed.fleet
 expect 0 stvm fleet change signed.fleet --dir plc --yes --sign office.key --trust trust.toml
 expect 0 stvm accept --dir plc
+expect 0 stvm revert --dir plc --yes --sign office.key --permanent
+expect 0 stvm fleet roll signed.fleet --fleet fleet.toml --yes --sign office.key --trust trust.toml
 expect 0 stvm journal --dir plc
 said 'edit E[0-9]*, fleet file .*, signed by office'
 said 'R0422: signed by key'
@@ -143,9 +145,26 @@ cat trust.toml other.toml >both.toml && mv both.toml trust.toml
 expect 0 stvm change c.st --dir plc --yes --sign other.key
 expect 0 stvm undo --dir plc --yes
 
+# One edit below another is taken back by a package of its own.
+two() {
+  echo "FUNCTION_BLOCK A VAR_OUTPUT n : INT; END_VAR n := n + $2; END_FUNCTION_BLOCK
+FUNCTION_BLOCK B VAR_OUTPUT n : INT; END_VAR n := n + $3; END_FUNCTION_BLOCK
+PROGRAM Main VAR a1 : A; b1 : B; END_VAR a1(); b1(); END_PROGRAM" >"$1"
+}
+two d.st 1 1
+two e.st 2 1
+two f.st 2 2
+expect 0 stvm change d.st --dir plc --yes --sign other.key --permanent --allow-loss
+expect 0 stvm change e.st --dir plc --yes --sign other.key
+expect 0 stvm change f.st --dir plc --yes --sign other.key
+lower=$(stvm edits --dir plc --format json | sed 's/.*"edits":\[{[^}]*"name":"\([^"]*\)".*/\1/')
+none_now R0420 stvm undo "$lower" --only --dir plc --yes
+expect 0 stvm undo "$lower" --only --dir plc --yes --sign other.key
+expect 0 stvm accept --dir plc
+
 # The policy for this machine. A bridge is another one.
 { echo 'unsigned = "local"'; cat trust.toml; } >local.toml && mv local.toml trust.toml
-expect 0 stvm change c.st --dir plc --yes
+expect 0 stvm change c.st --dir plc --yes --allow-loss
 expect 0 stvm undo --dir plc --yes
 cat >ssh <<SH
 #!/bin/sh
