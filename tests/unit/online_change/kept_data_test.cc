@@ -239,6 +239,8 @@ TEST_P(KeptDataBy, X1_C1_WhatFbExitWroteIsAsItWasWhereverItEnds) {
       if (report.ok()) break;
       EXPECT_EQ(report.error().refusal, Refusal::kDeadline);
       EXPECT_EQ(plant.hash(), before) << fail_at;
+      plant.controller().cycle();
+      EXPECT_EQ(plant.devices().sent.back()[0], 0) << "lamp was never sent, " << fail_at;
     }
     EXPECT_GE(points, 3) << back;
   }

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -240,17 +241,33 @@ TEST(LogOutput, R10_APipeThatNobodyReadsHoldsNobodyUp) {
 TEST(LogOutput, R10_KeepsTheOrderOfWhatIsMissing) {
   int ends[2];
   ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  ASSERT_GT(::fcntl(ends[1], F_SETPIPE_SZ, 65'536), 0);
   uint64_t count = 0;
   auto output = std::make_unique<LogOutput>(ends[1], false);
-  const auto add = [&] { output->add(Level::kInfo, 0, "line " + std::to_string(count++)); };
+  const std::string padding(400, '.');
+  const auto add = [&] {
+    output->add(Level::kInfo, 0, "line " + std::to_string(count++) + padding);
+  };
+  const auto wait_for_fewer = [&](size_t than) {
+    for (int i = 0; i < 60'000 && output->waiting() >= than; ++i) ::usleep(1'000);
+    ASSERT_LT(output->waiting(), than);
+  };
+  // The thread takes them all at once, and the pipe has room for a third.
+  while (count < LogOutput::kMostLines) add();
   output->start();
-  while (count < 20'000) add();
+  pollfd room{ends[1], POLLOUT, 0};
+  for (int i = 0; i < 60'000 && ::poll(&room, 1, 0) != 0; ++i) ::usleep(1'000);
+  while (count < 2 * LogOutput::kMostLines) add();
   const size_t waiting = output->waiting();
+  ASSERT_GT(waiting, LogOutput::kMostLines - 2) << "the others are missing";
   std::string rest(16'384, ' ');
-  const ssize_t size = ::read(ends[0], rest.data(), rest.size());
-  ASSERT_GT(size, 0);
-  rest.resize(static_cast<size_t>(size));
-  for (int i = 0; i < 10'000 && output->waiting() == waiting; ++i) ::usleep(1'000);
+  for (size_t done = 0; done < rest.size();) {
+    const ssize_t size = ::read(ends[0], rest.data() + done, rest.size() - done);
+    ASSERT_GT(size, 0);
+    done += static_cast<size_t>(size);
+  }
+  // What is in its hands has become less, so there is room; but not before what is missing.
+  wait_for_fewer(waiting - 10);
   for (int i = 0; i < 10; ++i) add();
   std::thread reader([&] { rest += read_all(ends[0]); });
   output.reset();
