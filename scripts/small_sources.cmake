@@ -83,10 +83,10 @@ foreach(name facts allocate allocator_state uses forward simplify numbers)
 endforeach()
 # Verbs that ask a controller, and what only these use.
 set(STC_CLIENT)
-foreach(name abort bench change change_follow controller_client doctor edits events fate_view get
-        journal json_value names package_making plot question remote_client restart revoke set source
-        status stop switch_steps switch_text times_text trace undo undo_only unit_table values
-        waiting watch)
+foreach(name abort bench bridge change change_follow controller_client doctor edits events
+        fate_view get image journal json_value names package_making plot question remote_client
+        restart revoke set source status stop switch_steps switch_text times_text trace undo
+        undo_only unit_table values waiting watch)
   list(APPEND STC_CLIENT ${CMAKE_SOURCE_DIR}/tools/stvm/${name}.cc)
 endforeach()
 file(GLOB more_clients ${CMAKE_SOURCE_DIR}/tools/stvm/fleet*.cc

@@ -36,8 +36,8 @@ Key read_private(std::string_view pem) {
 base::Result<online_change::PublicKey> raw_public(const Key& key) {
   online_change::PublicKey out{};
   size_t size = out.size();
-  const bool good = key && EVP_PKEY_get_raw_public_key(key.get(), out.data(), &size) == 1 &&
-                    size == out.size();
+  const bool good =
+      key && EVP_PKEY_get_raw_public_key(key.get(), out.data(), &size) == 1 && size == out.size();
   if (!good) return failed("no Ed25519 private key in PEM, or an encrypted one");
   return out;
 }
@@ -69,8 +69,7 @@ base::Result<online_change::Signature> sign(std::string_view pem, base::ByteSpan
   online_change::Signature out{};
   size_t size = out.size();
   const bool good =
-      context &&
-      EVP_DigestSignInit(context.get(), nullptr, nullptr, nullptr, key.get()) == 1 &&
+      context && EVP_DigestSignInit(context.get(), nullptr, nullptr, nullptr, key.get()) == 1 &&
       EVP_DigestSign(context.get(), out.data(), &size, message.data(), message.size()) == 1 &&
       size == out.size();
   if (!good) return failed("OpenSSL cannot sign with this key");
@@ -79,8 +78,7 @@ base::Result<online_change::Signature> sign(std::string_view pem, base::ByteSpan
 
 bool verify(const online_change::PublicKey& key, base::ByteSpan message,
             const online_change::Signature& signature) {
-  const Key known(
-      EVP_PKEY_new_raw_public_key(EVP_PKEY_ED25519, nullptr, key.data(), key.size()));
+  const Key known(EVP_PKEY_new_raw_public_key(EVP_PKEY_ED25519, nullptr, key.data(), key.size()));
   const Context context(EVP_MD_CTX_new());
   return known && context &&
          EVP_DigestVerifyInit(context.get(), nullptr, nullptr, nullptr, known.get()) == 1 &&

@@ -38,8 +38,8 @@ base::Bytes statement_bytes(const Statement& statement) {
 
 std::string read_name(base::ByteReader& in, bool may_be_empty) {
   const base::ByteSpan bytes = in.blob();
-  std::string name(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(std::min(
-                                                      bytes.size(), kMostSignedName + 1)));
+  std::string name(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(
+                                                      std::min(bytes.size(), kMostSignedName + 1)));
   if (!is_signed_name(name) && !(may_be_empty && name.empty())) in.fail();
   return name;
 }
@@ -70,8 +70,8 @@ base::Digest key_id(const PublicKey& key) { return base::sha256(key); }
 
 bool is_signed_name(std::string_view name) {
   const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           c == '.' || c == '_' || c == '-' || c == ':' || c == '/';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+           c == '_' || c == '-' || c == ':' || c == '/';
   };
   return !name.empty() && name.size() <= kMostSignedName && std::ranges::all_of(name, fits);
 }
@@ -84,8 +84,7 @@ base::Bytes message_of(const Statement& statement) {
   return out.take();
 }
 
-base::Bytes encode(const Statement& statement, const Signature& signature,
-                   base::ByteSpan content) {
+base::Bytes encode(const Statement& statement, const Signature& signature, base::ByteSpan content) {
   base::ByteWriter out;
   out.raw(message_of(statement));
   out.raw(signature);
@@ -100,7 +99,7 @@ base::Result<SignedFile> open_signed(base::Bytes& bytes) {
   const uint32_t version = in.u32();
   if (!in.failed() && version != kSignedVersion) {
     return bad_signed("version " + std::to_string(version) + ", this program reads " +
-               std::to_string(kSignedVersion));
+                      std::to_string(kSignedVersion));
   }
   base::Result<Statement> statement = read_statement(in.blob());
   const size_t message = in.at();
@@ -109,8 +108,7 @@ base::Result<SignedFile> open_signed(base::Bytes& bytes) {
   if (!statement.ok()) return statement.error();
   const base::ByteSpan content = in.raw(in.left());
   if (content.size() != statement->size || base::sha256(content) != statement->content) {
-    return base::Error{base::Refusal::kBadHash,
-                       "signed file: its content is not what was signed"};
+    return base::Error{base::Refusal::kBadHash, "signed file: its content is not what was signed"};
   }
   SignedFile out{std::move(*statement), {}, {}};
   const auto begin = bytes.begin();

@@ -30,14 +30,14 @@ inline constexpr size_t kMostSignedName = 64;  // bytes of a plan or target
 
 struct Statement {
   SignedKind kind = SignedKind::kPackage;
-  base::Digest key{};        // SHA-256 of the public key
-  std::string plan;          // files of one plan come in the order of their sequences
-  uint64_t sequence = 0;     //
-  int64_t made_s = 0;        // UTC, since 1970
-  int64_t expires_s = 0;     // likewise: from then on it is refused
-  std::string target;        // the controller that it is for; "": any
-  uint64_t size = 0;         // of the content
-  base::Digest content{};    // SHA-256
+  base::Digest key{};      // SHA-256 of the public key
+  std::string plan;        // files of one plan come in the order of their sequences
+  uint64_t sequence = 0;   //
+  int64_t made_s = 0;      // UTC, since 1970
+  int64_t expires_s = 0;   // likewise: from then on it is refused
+  std::string target;      // the controller that it is for; "": any
+  uint64_t size = 0;       // of the content
+  base::Digest content{};  // SHA-256
 };
 
 struct SignedFile {
@@ -57,8 +57,7 @@ bool is_signed_name(std::string_view name);
 
 // What is to be signed. Equal statements give equal bytes.
 base::Bytes message_of(const Statement& statement);
-base::Bytes encode(const Statement& statement, const Signature& signature,
-                   base::ByteSpan content);
+base::Bytes encode(const Statement& statement, const Signature& signature, base::ByteSpan content);
 // Takes the statement off `bytes`, which become the content. kBadFormat; kBadHash: the content is
 // not what was signed. After an error `bytes` are as they were.
 base::Result<SignedFile> open_signed(base::Bytes& bytes);

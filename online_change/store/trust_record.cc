@@ -86,9 +86,10 @@ base::Result<TrustRecord> Store::trust() const {
   std::optional<TrustRecord> out;
   if (record.state == RecordState::kValid) out = decode_trust(record.payload);
   if (out) return std::move(*out);
-  return failed("the file `trust` of the state folder is damaged: nobody knows what was taken "
-                "before, so nothing signed is taken. Remove that file once old signed files have "
-                "expired");
+  return failed(
+      "the file `trust` of the state folder is damaged: nobody knows what was taken "
+      "before, so nothing signed is taken. Remove that file once old signed files have "
+      "expired");
 }
 
 }  // namespace online_change

@@ -31,8 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     base::check(std::ranges::equal(content, bytes), "what was not opened is as it was");
     return 0;
   }
-  const base::Bytes again =
-      online_change::encode(file->statement, file->signature, content);
+  const base::Bytes again = online_change::encode(file->statement, file->signature, content);
   base::check(std::ranges::equal(again, bytes), "the same file comes back");
   base::check(file->message == online_change::message_of(file->statement),
               "what is signed is what was read");

@@ -42,7 +42,8 @@ class Reader {
     if (key == "unsigned") return read_policy(value);
     const size_t dot = key.rfind('.');
     const bool of_key = key.starts_with(kTable) && dot >= kTable.size();
-    if (!of_key) return fail(value, "unknown key `" + key + "`; there are name, unsigned, [keys.NAME]");
+    if (!of_key)
+      return fail(value, "unknown key `" + key + "`; there are name, unsigned, [keys.NAME]");
     read_key(row(key.substr(kTable.size(), dot - kTable.size())), key.substr(dot + 1), value);
   }
 
@@ -134,10 +135,10 @@ base::Result<TrustFile> read_trust_file(const std::string& path) {
 base::Status check_key(const TrustedKey& key, int64_t now_s) {
   if (now_s >= key.from_s && now_s < key.until_s) return base::Ok{};
   const bool early = now_s < key.from_s;
-  return base::Error{base::Refusal::kKeyEnded,
-                     "key " + key.name + (early ? " begins at " : " ended at ") +
-                         utc_text(early ? key.from_s : key.until_s) + ", and it is " +
-                         utc_text(now_s)};
+  return base::Error{base::Refusal::kKeyEnded, "key " + key.name +
+                                                   (early ? " begins at " : " ended at ") +
+                                                   utc_text(early ? key.from_s : key.until_s) +
+                                                   ", and it is " + utc_text(now_s)};
 }
 
 base::Result<const TrustedKey*> check_signature(const TrustFile& trust,
@@ -147,9 +148,9 @@ base::Result<const TrustedKey*> check_signature(const TrustFile& trust,
   const online_change::Statement& statement = file.statement;
   const TrustedKey* const key = trust.find(statement.key);
   if (key == nullptr) {
-    return base::Error{base::Refusal::kUnknownKey,
-                       "signed by key " + base::short_hex(statement.key) +
-                           ", which the trust file does not have"};
+    return base::Error{
+        base::Refusal::kUnknownKey,
+        "signed by key " + base::short_hex(statement.key) + ", which the trust file does not have"};
   }
   if (!verify(key->key, file.message, file.signature)) {
     return base::Error{base::Refusal::kBadSignature,
@@ -157,14 +158,15 @@ base::Result<const TrustedKey*> check_signature(const TrustFile& trust,
   }
   if (base::Status in_time = check_key(*key, now_s); !in_time.ok()) return in_time.error();
   if ((statement.kind == online_change::SignedKind::kRevoked) != key->revokes) {
-    return base::Error{base::Refusal::kOtherTarget,
-                       "key " + key->name + (key->revokes ? " is for lists of revoked keys only"
-                                                          : " may not revoke keys")};
+    return base::Error{
+        base::Refusal::kOtherTarget,
+        "key " + key->name +
+            (key->revokes ? " is for lists of revoked keys only" : " may not revoke keys")};
   }
   if (now_s < statement.expires_s) return key;
-  return base::Error{base::Refusal::kSignatureExpired,
-                     "signed by " + key->name + " until " + utc_text(statement.expires_s) +
-                         ", and it is " + utc_text(now_s)};
+  return base::Error{base::Refusal::kSignatureExpired, "signed by " + key->name + " until " +
+                                                           utc_text(statement.expires_s) +
+                                                           ", and it is " + utc_text(now_s)};
 }
 
 std::string trust_lines(const TrustedKey& key) {

@@ -84,9 +84,10 @@ base::Status write_private(const std::string& path, std::string_view text) {
   if (file.fd >= 0) return tools::write_all(file.fd, path, base::as_bytes(text));
   const bool is_there = errno == EEXIST;
   return base::Error{base::Refusal::kFileUnwritable,
-                     path + ": " + (is_there ? "is there already, and may be a key that is used; "
-                                               "name another file"
-                                             : std::strerror(errno))};
+                     path + ": " +
+                         (is_there ? "is there already, and may be a key that is used; "
+                                     "name another file"
+                                   : std::strerror(errno))};
 }
 
 // Whoever can read it can sign.
@@ -95,8 +96,9 @@ base::Result<std::string> read_private(const std::string& path) {
   const bool known = ::stat(path.c_str(), &about) == 0;
   if (known && S_ISREG(about.st_mode) && (about.st_mode & 077) != 0) {
     return base::Error{base::Refusal::kBadKeys,
-                       path + ": others can read or write this private key; chmod 600 it, or make "
-                              "another key if they may have done so"};
+                       path +
+                           ": others can read or write this private key; chmod 600 it, or make "
+                           "another key if they may have done so"};
   }
   return tools::read_text(path, kMostKeyBytes);
 }
@@ -137,13 +139,13 @@ base::Status sign_content(const tools::Options& options, base::ByteSpan content,
   base::Result<std::string> pem = read_private(options.text("--key"));
   if (!pem.ok()) return pem.error();
   base::Result<online_change::PublicKey> own = keys::public_key_of(*pem);
-  if (!own.ok()) return base::Error{own.error().refusal, options.text("--key") + ": " + own.error().text};
+  if (!own.ok())
+    return base::Error{own.error().refusal, options.text("--key") + ": " + own.error().text};
   Statement statement;
   statement.kind = kind;
   statement.key = online_change::key_id(*own);
   statement.plan = plan.empty() ? "key-" + base::short_hex(statement.key) : std::move(plan);
-  base::Result<uint64_t> sequence =
-      options.number("--sequence", static_cast<uint64_t>(now_ns()));
+  base::Result<uint64_t> sequence = options.number("--sequence", static_cast<uint64_t>(now_ns()));
   if (!sequence.ok()) return sequence.error();
   statement.sequence = *sequence;
   base::Result<int64_t> expires = end_time(options, kind == SignedKind::kRevoked ? kMostDays : 7);

@@ -34,8 +34,8 @@ base::Status Admission::take(Signer& signer, int64_t now_ns) const {
 
 base::Result<Signer> Admission::bring_again(Signer signer, bool local, int64_t now_ns) const {
   if (trust_ == nullptr) return signer;
-  base::Status may = signer ? trust_->check_again(*signer, now_ns / kSecond)
-                            : trust_->take_unsigned(local);
+  base::Status may =
+      signer ? trust_->check_again(*signer, now_ns / kSecond) : trust_->take_unsigned(local);
   if (!may.ok()) return may.error();
   if (signer) signer->taken = true;
   return signer;

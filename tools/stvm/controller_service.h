@@ -300,7 +300,7 @@ class ControllerService : public vm::Service {
   std::string who_;
   std::string changed_by_;  // who made the newest edition
   uint64_t session_ = 0;
-  bool local_ = true;   // nobody asks over a bridge
+  bool local_ = true;  // nobody asks over a bridge
   Admission admission_;
   uint64_t more_of_ = 0;  // session that brings an edit in several steps; 0: none does
   uint64_t chains_ = 0;   // such edits until now
@@ -319,7 +319,7 @@ class ControllerService : public vm::Service {
   base::Bytes staged_package_;
   uint32_t staged_flags_ = 0;
   base::Digest staged_digest_{};  // of the package that was sent; zeros: brought again by redo
-  Signer signer_;       // of what is staged
+  Signer signer_;                 // of what is staged
   std::string redone_;  // name of the edit that is staged again; "": a new one
   double pace_ = 0;        // 0: not measured yet
   std::string taken_out_;  // the edit on trial whose work it takes back; "": none

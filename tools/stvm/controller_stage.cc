@@ -84,9 +84,9 @@ base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
     return signer.error();
   }
   const std::string unless = request.names.empty() ? std::string() : request.names.front();
-  base::Result<base::Bytes> staged = stage_package(std::move(package), request.flags, unless, {},
-                                                  request.names.size() > 2 ? request.names[2] : "",
-                                                  *signer);
+  base::Result<base::Bytes> staged =
+      stage_package(std::move(package), request.flags, unless, {},
+                    request.names.size() > 2 ? request.names[2] : "", *signer);
   if (!staged.ok()) return staged;
   staged_digest_ = request.digest;
   const bool rehearsal = (request.flags & vm::kRehearsal) != 0;

@@ -19,8 +19,8 @@ base::Result<FleetEdit> read_fleet_edit(const std::string& path) {
 
 base::Status check_fleet_signature(const std::string& path, const tools::Options& options) {
   if (!options.has("--trust")) return base::Ok{};
-  return tools::run_beside(
-      "stc", {"key", "verify", path, "--quiet", "--trust", options.text("--trust")});
+  return tools::run_beside("stc",
+                           {"key", "verify", path, "--quiet", "--trust", options.text("--trust")});
 }
 
 std::string fleet_note(const base::Digest& digest) {

@@ -41,17 +41,17 @@ base::Status check_sequence(TrustRecord& record, const Signed& what) {
   const PlanMark* const mark = record.find(said.plan);
   if (mark == nullptr) {
     if (said.made_s > record.dropped_s) return base::Ok{};
-    return base::Error{base::Refusal::kReplayed,
-                       "signed by " + what.by + " at " + tools::utc_text(said.made_s) +
-                           ": older than plans that are known no more"};
+    return base::Error{base::Refusal::kReplayed, "signed by " + what.by + " at " +
+                                                     tools::utc_text(said.made_s) +
+                                                     ": older than plans that are known no more"};
   }
   if (said.sequence > mark->sequence) return base::Ok{};
   const bool same = said.sequence == mark->sequence && said.content == mark->content;
   if (same && said.kind == SignedKind::kImage) return base::Ok{};
-  return base::Error{base::Refusal::kReplayed,
-                     "signed by " + what.by + " as sequence " + std::to_string(said.sequence) +
-                         " of plan " + said.plan + ", which has come to " +
-                         std::to_string(mark->sequence)};
+  return base::Error{base::Refusal::kReplayed, "signed by " + what.by + " as sequence " +
+                                                   std::to_string(said.sequence) + " of plan " +
+                                                   said.plan + ", which has come to " +
+                                                   std::to_string(mark->sequence)};
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ base::Result<std::unique_ptr<Trust>> KeyTrust::open(const std::string& path,
                                                     online_change::VerifySignature verify) {
   base::Result<tools::TrustFile> file = tools::read_trust_file(path);
   if (!file.ok()) return file.error();
-  return std::unique_ptr<Trust>(new KeyTrust(path, store, verify));  // NOLINT: private
+  return std::unique_ptr<Trust>(std::make_unique<KeyTrust>(path, store, verify));
 }
 
 base::Result<KeyTrust::Known> KeyTrust::known(int64_t now_s) const {
@@ -129,7 +129,8 @@ base::Result<std::string> KeyTrust::revoke(const SignedFile& file, base::ByteSpa
     std::vector<base::Digest>& revoked = all->record.revoked;
     if (std::ranges::find(revoked, key) == revoked.end()) revoked.push_back(key);
     const tools::TrustedKey* const trusted = all->file.find(key);
-    names += (names.empty() ? "" : ", ") + (trusted != nullptr ? trusted->name : base::short_hex(key));
+    names +=
+        (names.empty() ? "" : ", ") + (trusted != nullptr ? trusted->name : base::short_hex(key));
   }
   if (all->record.revoked.size() > online_change::kMostRevokedKept) {
     return base::Error{base::Refusal::kTooMany, "more than 1,024 revoked keys"};

@@ -14,7 +14,10 @@ namespace stvm {
 
 class KeyTrust : public Trust {
  public:
-  // `store` must outlive it. Errors: those of read_trust_file().
+  // Of a trust file that can be read; open() makes sure of it. `store` must outlive it.
+  KeyTrust(std::string path, online_change::Store& store, online_change::VerifySignature verify)
+      : path_(std::move(path)), store_(store), verify_(verify) {}
+  // Errors: those of read_trust_file().
   static base::Result<std::unique_ptr<Trust>> open(const std::string& path,
                                                    online_change::Store& store,
                                                    online_change::VerifySignature verify);
@@ -28,8 +31,6 @@ class KeyTrust : public Trust {
   base::Status take_unsigned(bool local) override;
 
  private:
-  KeyTrust(std::string path, online_change::Store& store, online_change::VerifySignature verify)
-      : path_(std::move(path)), store_(store), verify_(verify) {}
   struct Known {
     tools::TrustFile file;
     online_change::TrustRecord record;

@@ -28,7 +28,8 @@ base::Result<base::Bytes> sign_package(base::ByteSpan package, const std::string
   const std::string file = folder->file("change.pkg");
   base::Status done = tools::write_file(file, package);
   if (!done.ok()) return done.error();
-  done = tools::run_beside("stc", {"key", "sign", file, "--key", key_file, "--days", "1", "-o", file});
+  done =
+      tools::run_beside("stc", {"key", "sign", file, "--key", key_file, "--days", "1", "-o", file});
   if (!done.ok()) return done.error();
   return tools::read_bytes(file);
 }

@@ -20,7 +20,7 @@ namespace stvm {
 
 // What `stvm serve --trust` brings along.
 struct StartTrust {
-  std::string path;                                              // of the trust file; "": no keys
+  std::string path;                                               // of the trust file; "": no keys
   std::map<base::Digest, online_change::SignedFile> images = {};  // signed ones, by their content
 };
 
@@ -66,7 +66,7 @@ class ServedResource {
   vm::FileStorage storage_;
   online_change::Store store_;
   std::shared_ptr<EventLog> events_;  // threads of devices that hang may outlive this
-  std::unique_ptr<Trust> trust_;  // null: without keys
+  std::unique_ptr<Trust> trust_;      // null: without keys
   std::optional<online_change::Boot> boot_;
   vm::Clock* clock_ = nullptr;
   bool virtual_time_ = false;

@@ -18,7 +18,7 @@
        "a BOOL of the running program: while it is TRUE nothing is switched, and a change that " \
        "is being prepared is aborted"},                                                          \
       {"--wait", nullptr, "wait while others change the controller, or have a change on trial"}, \
-      {"--sign", "KEY", "sign it for a controller with keys; a private key of `stc key new`"},     \
+      {"--sign", "KEY", "sign it for a controller with keys; a private key of `stc key new`"},   \
       {"--no-auto-undo", nullptr,                                                                \
        "do not undo it when a trap stops a task in these cycles either"},                        \
   {                                                                                              \

@@ -124,9 +124,9 @@ class Keys : public ::testing::Test {
     return std::string("[keys.") + name + "]\npublic = \"" + base::to_hex(key.public_key) + "\"\n";
   }
   void trust(bool with_office, const std::string& policy = {}) {
-    std::string text = "name = \"line2\"\n" + policy + lines("old", old_) +
-                       "until = \"" + tools::utc_text(kNow + 1000) + "\"\n" +
-                       lines("chief", chief_) + "revokes = true\n";
+    std::string text = "name = \"line2\"\n" + policy + lines("old", old_) + "until = \"" +
+                       tools::utc_text(kNow + 1000) + "\"\n" + lines("chief", chief_) +
+                       "revokes = true\n";
     if (with_office) text += lines("office", office_);
     ASSERT_TRUE(tools::write_file(file(), base::as_bytes(text)).ok());
   }
@@ -231,7 +231,8 @@ TEST_F(Keys, F03_EachFlippedBitIsRefused) {
     ASSERT_FALSE(bring(bad).ok()) << at;
   }
   for (size_t size = 0; size < good.size(); size += size < statement ? 1 : 97) {
-    ASSERT_FALSE(bring(base::Bytes(good.begin(), good.begin() + static_cast<ptrdiff_t>(size))).ok());
+    ASSERT_FALSE(
+        bring(base::Bytes(good.begin(), good.begin() + static_cast<ptrdiff_t>(size))).ok());
   }
   EXPECT_TRUE(bring(good).ok()) << "and the good one is taken still";
 }
