@@ -48,9 +48,9 @@ constexpr tools::Command kKeyCommand{
     "Makes keys, signs images, packages and fleet files, checks signatures, revokes keys.",
     kKeyOptions, 2};
 
-base::Error usage(const std::string& text) { return {base::Refusal::kUsage, "key: " + text}; }
-
 #ifdef STC_HAS_KEYS
+
+base::Error usage(const std::string& text) { return {base::Refusal::kUsage, "key: " + text}; }
 
 int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(

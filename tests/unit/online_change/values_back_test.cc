@@ -143,6 +143,25 @@ TEST(ValuesBack, X4_case77_WhatASubrangeHadCutComesBack) {
   EXPECT_EQ(plant.get("Main.p[3].x"), "1000");
 }
 
+// A variable at a fixed address, too.
+TEST(ValuesBack, X4_case77_WhatASubrangeHadCutAtAFixedAddressComesBack) {
+  const auto with = [](const std::string& type, const std::string& more) {
+    return "VAR_GLOBAL v AT %MW10 : " + type + "; w AT %MW11 : " + type + "; END_VAR " +
+           machine("", more);
+  };
+  TwoEdits edits(with("INT", ""), {{"v", "500"}, {"w", "501"}}, with("INT(0..100)", ""),
+                 with("INT(0..100)", "later : DINT;"));
+  Plant& plant = edits.plant;
+  EXPECT_EQ(plant.get("v"), "100");
+  plant.set("w", "7");
+  EXPECT_TRUE(edits.take_out(with("INT", "later : DINT;")).empty());
+  EXPECT_EQ(plant.get("v"), "500");
+  EXPECT_EQ(plant.get("w"), "7");
+  plant.undo();
+  EXPECT_EQ(plant.get("v"), "100");
+  EXPECT_EQ(plant.get("w"), "7");
+}
+
 // Their area moves, so that they lie in the middle of what is copied.
 TEST(ValuesBack, X4_case77_WhatASubrangeHadCutComesBackAtAnotherPlace) {
   const auto with = [](const std::string& type, const std::string& fields,
