@@ -15,7 +15,7 @@ constexpr Severity kWarning = Severity::kWarning;
 constexpr Severity kNote = Severity::kNote;
 
 constexpr DiagnosticRow kRows[] = {
-#define DIAGNOSTIC(id, code, severity, title, help) {code, severity, title, help},
+#define DIAGNOSTIC(id, code, severity, title, help) {code, severity, title},
 #include "base/diagnostics.def"
 #undef DIAGNOSTIC
 };

@@ -26,9 +26,10 @@ struct DiagnosticRow {
   std::string_view code;  // "E3001"
   Severity severity;
   std::string_view title;  // what kind of mistake, without values
-  std::string_view help;   // the page that `stc explain CODE` shows
 };
 const DiagnosticRow& diagnostic_row(DiagnosticCode code);
+// What `stc explain CODE` shows. Apart from the rows: a program that explains nothing has no pages.
+std::string_view diagnostic_page(DiagnosticCode code);
 // Number of rows, to walk the registry.
 uint32_t diagnostic_count();
 

@@ -134,7 +134,7 @@ class SarifWriter {
     std::string out;
     for (DiagnosticCode code : codes_) {
       const DiagnosticRow& row = diagnostic_row(code);
-      out += (out.empty() ? "" : ",") + rule(row.code, row.title, row.help);
+      out += (out.empty() ? "" : ",") + rule(row.code, row.title, diagnostic_page(code));
     }
     if (run_.refused == nullptr) return out;
     return out + (out.empty() ? "" : ",") +

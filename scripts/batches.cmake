@@ -3,8 +3,9 @@
 # for work on one of them.
 set(STC_BATCH 16 CACHE STRING "Sources that are compiled together")
 
-# These have the same names in each source of the folder, or options of their own.
-set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/vm/exec/(handle|fused)_")
+# These have the same names in each source of the folder, options of their own, or texts that most
+# programs do without.
+set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/diagnostics_pages|/vm/exec/(handle|fused)_")
 
 # stc_batches(RESULT source...): the sources of one folder, or units that include them. With
 # STC_BATCH_FOLDER they are of that folder and those in it, and share units. What is compiled small,

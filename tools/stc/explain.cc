@@ -225,7 +225,7 @@ std::optional<std::string> page_of(const std::string& what) {
   if (const auto code = base::diagnostic_code(what)) {
     const base::DiagnosticRow& row = base::diagnostic_row(*code);
     return what + ": " + std::string(row.title) + " (" + severity_name(row.severity) + ")\n\n" +
-           std::string(row.help) + "\n";
+           std::string(base::diagnostic_page(*code)) + "\n";
   }
   for (uint32_t i = 0; i < ir::kTrapCount; ++i) {
     auto kind = static_cast<ir::TrapKind>(i);

@@ -32,7 +32,7 @@ TEST(Registry, CodesAreUniqueAndFitTheirSeverity) {
     EXPECT_EQ(row.code.size(), 5u) << row.code;
     EXPECT_EQ(row.code[0], letter_of(row.severity)) << row.code;
     EXPECT_FALSE(row.title.empty()) << row.code;
-    EXPECT_FALSE(row.help.empty()) << row.code;
+    EXPECT_FALSE(diagnostic_page(static_cast<DiagnosticCode>(i)).empty()) << row.code;
   }
   EXPECT_EQ(diagnostic_row(DiagnosticCode::kMissingEnd).code, "E1003");
 }
