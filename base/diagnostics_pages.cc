@@ -1,5 +1,5 @@
-// The pages of the registry of messages. They are a unit of their own (scripts/batches.cmake): texts
-// of one unit are linked together, and a program that explains nothing needs none of these.
+// The pages of the registry of messages. They are a unit of their own (scripts/batches.cmake): the
+// texts of one unit are linked together, and a program that explains nothing needs none of these.
 #include "base/check.h"
 #include "base/diagnostics.h"
 
