@@ -32,7 +32,7 @@ struct Statement {
   SignedKind kind = SignedKind::kPackage;
   base::Digest key{};      // SHA-256 of the public key
   std::string plan;        // files of one plan come in the order of their sequences
-  uint64_t sequence = 0;   //
+  uint64_t sequence = 0;   // its place in the plan
   int64_t made_s = 0;      // UTC, since 1970
   int64_t expires_s = 0;   // likewise: from then on it is refused
   std::string target;      // the controller that it is for; "": any

@@ -11,6 +11,7 @@ namespace online_change {
 namespace {
 
 constexpr uint32_t kTrustVersion = 1;
+
 }  // namespace
 
 PlanMark* TrustRecord::find(const std::string& plan) {

@@ -55,7 +55,7 @@ constexpr Pair exact_arc(Pair y, Pair x) {
   return above ? add(kHalfPi, negate(result)) : result;
 }
 
-// arctan t = t + t^3 * tail for |t| <= 1 / 8, to 2^-60 of it.
+// arctan t = t + t^3 * tail for |t| <= 1 / 8, to 2^-58 of it.
 double arc_tail(double z, double square) {
   const double first = (z * (1.0 / 5) - 1.0 / 3) + square * (z * (1.0 / 9) - 1.0 / 7);
   const double second = (z * (1.0 / 13) - 1.0 / 11) + square * (z * (1.0 / 17) - 1.0 / 15);

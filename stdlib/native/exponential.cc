@@ -16,7 +16,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr Pair kOneOverLn10 = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
 constexpr int32_t kMostFactors = 64;  // whole exponents up to here are products
 
-// Not by std::floor, which is a call on machines of 2003. From 2^53 on all are even.
+// Not by std::floor, which is a call where the processor may lack an instruction for it. From 2^53
+// on all are even.
 bool is_integer(double x) {
   return !(std::fabs(x) < 0x1p53) || static_cast<double>(static_cast<int64_t>(x)) == x;
 }

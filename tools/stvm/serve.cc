@@ -56,8 +56,8 @@ constexpr tools::Command kServeCommand{
     kServeOptions};
 
 using Served = std::vector<std::unique_ptr<ServedResource>>;
-// What each resource gets: where its events go, and the keys.
-struct Output {
+// What all resources get: where their events go, and the keys.
+struct Shared {
   std::shared_ptr<LogOutput> log;
   StartTrust trust;
 };
@@ -65,9 +65,9 @@ using Resource = vm::GlobalExchange::Resource;
 
 base::Status open_one(const std::string& directory, const std::string& name,
                       const std::optional<ir::VerifiedImage>& given, bool create, Served& served,
-                      const Output& output) {
+                      const Shared& shared) {
   const std::string folder = name.empty() ? directory : directory + "/" + name;
-  auto opened = ServedResource::open(folder, name, given, create, output.log, output.trust);
+  auto opened = ServedResource::open(folder, name, given, create, shared.log, shared.trust);
   if (!opened.ok()) return opened.error();
   served.push_back(std::move(*opened));
   return base::Ok{};
@@ -94,16 +94,16 @@ base::Status check_stored(const std::string& directory, const std::vector<Resour
 }
 
 base::Status open_given(const std::string& directory, const std::vector<Resource>& given,
-                        Served& served, const Output& output) {
+                        Served& served, const Shared& shared) {
   base::Status opened = check_stored(directory, given);
   for (size_t i = 0; i < given.size() && opened.ok(); ++i) {
-    opened = open_one(directory, given[i].name, given[i].image, true, served, output);
+    opened = open_one(directory, given[i].name, given[i].image, true, served, shared);
   }
   return opened;
 }
 
 base::Result<Served> open_programs(const tools::Options& options, std::vector<std::string> programs,
-                                   const std::string& directory, const Output& output) {
+                                   const std::string& directory, const Shared& shared) {
   Sources sources = sources_of(options);
   sources.paths = std::move(programs);
   auto images = load_programs(sources);
@@ -111,40 +111,40 @@ base::Result<Served> open_programs(const tools::Options& options, std::vector<st
   auto given = name_resources(std::move(*images));
   if (!given.ok()) return given.error();
   Served served;
-  base::Status opened = open_given(directory, *given, served, output);
+  base::Status opened = open_given(directory, *given, served, shared);
   if (!opened.ok()) return opened.error();
   return served;
 }
 
 // By a single resource, or by several.
-base::Result<Served> open_stored(const std::string& directory, bool create, const Output& output) {
+base::Result<Served> open_stored(const std::string& directory, bool create, const Shared& shared) {
   Served served;
   const std::vector<std::string> stored = stored_resources(directory);
   base::Status opened = base::Ok{};
-  if (stored.empty()) opened = open_one(directory, "", std::nullopt, create, served, output);
+  if (stored.empty()) opened = open_one(directory, "", std::nullopt, create, served, shared);
   for (size_t i = 0; i < stored.size() && opened.ok(); ++i) {
-    opened = open_one(directory, stored[i], std::nullopt, create, served, output);
+    opened = open_one(directory, stored[i], std::nullopt, create, served, shared);
   }
   if (!opened.ok()) return opened.error();
   return served;
 }
 
 // What is given, or what is stored, or where nothing ever was, the first program.
-base::Result<Served> open_all(const tools::Options& options, const Output& output) {
+base::Result<Served> open_all(const tools::Options& options, const Shared& shared) {
   const std::string directory = state_directory(options);
   if (!options.has("--first")) {
     if (options.arguments().empty()) {
-      return open_stored(directory, options.has("--create"), output);
+      return open_stored(directory, options.has("--create"), shared);
     }
-    return open_programs(options, options.arguments(), directory, output);
+    return open_programs(options, options.arguments(), directory, shared);
   }
   if (!options.arguments().empty()) {
     return base::Error{base::Refusal::kUsage,
                        "--first is for a start without other programs; leave one of them out"};
   }
-  base::Result<Served> stored = open_stored(directory, false, output);
+  base::Result<Served> stored = open_stored(directory, false, shared);
   if (stored.ok() || stored.error().refusal != base::Refusal::kFileNotFound) return stored;
-  return open_programs(options, {options.text("--first")}, directory, output);
+  return open_programs(options, {options.text("--first")}, directory, shared);
 }
 
 // Of the images among these.

@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr long double kHalfPiLong = 1.57079632679489661923132169163975144L;
 
-// B5: no result is a unit in the last place away.
+// No result is a unit in the last place away.
 TEST(Math, EveryFunctionIsCloserThanItsBound) {
   for (const MathCase& one : math_cases()) {
     Random random;
