@@ -154,8 +154,8 @@ struct RealAngle {
   double angle;
 };
 
-// In two parts of pi / 2: no REAL below 2^20 comes closer to a multiple than 2^-28, all of them were
-// tried, and the error is 2^-66.
+// In two parts of pi / 2. No REAL below 2^20 comes closer to a multiple than 2^-28: the tests try
+// all that could. The error is 2^-66.
 RealAngle reduce(float x) {
   constexpr double kTwoOverPi53 = 0x1.45f306dc9c883p-1;
   constexpr double kFirst = 0x1.921fb544p+0;
