@@ -13,10 +13,6 @@ ST
 version v1 'gone : INT := 3;' 1
 version v2 '' 2
 version v3 'more : INT := 9;' 3
-kill_now() {
-  kill -9 "$(cat plc.pid)"
-  while kill -0 "$(cat plc.pid)" 2>/dev/null; do sleep 0.02; done
-}
 stored() { cat plc/retain_* | cksum; }  # of values that nothing else changes
 policy() { for v in v1 v2 v3; do printf '[change]\nboots = "%s"\n' "$1" >$v/stc.toml; done; }
 
@@ -31,7 +27,7 @@ expect 0 stvm set total=1000 gone=44 --dir plc
 expect 0 stvm change v2 --dir plc --yes --allow-overrun --allow-loss
 expect 0 stvm status --dir plc
 said 'power loss +they are lost, and what boots next runs'
-kill_now
+power_cut plc
 serve plc
 expect 0 stvm get gone total --dir plc
 said 'gone=44'
@@ -66,7 +62,7 @@ expect 0 stvm set total=2000 --dir plc
 expect 0 stvm status --dir plc
 said 'power loss +they go on, with their ways back'
 for _ in $(seq 4000); do [ "$(stored)" = "$before" ] || break; sleep 0.05; done
-kill_now
+power_cut plc
 serve plc
 expect 0 stvm status --dir plc
 said 'running, on trial'

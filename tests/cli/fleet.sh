@@ -154,13 +154,12 @@ expect 0 stvm undo --dir three
 state ok
 expect 0 stvm redo --dir three --yes --allow-overrun
 state 'has it'
-power_cut() { kill -9 "$(cat three.pid)"; wait "$(cat three.pid)" 2>/dev/null || true; }
-power_cut
+power_cut three
 serve three
 state ok
 expect 0 stvm change x.fleet --dir three --yes --allow-overrun
 expect 0 stvm accept --dir three
-power_cut
+power_cut three
 serve three
 state 'has it'
 

@@ -119,7 +119,7 @@ said 'R0422: signed by key'
 said 'signed by office .plan key-'
 
 # What was taken is known over a kill, and the start image that boots no more needs a signature.
-kill -9 "$(cat plc.pid)"
+power_cut plc
 serve plc --trust trust.toml
 none_now R0425 stvm change b.signed --dir plc --yes
 expect 0 stvm stop --dir plc

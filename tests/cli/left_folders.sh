@@ -26,8 +26,7 @@ watch() {
 }
 watch killed
 [ "$(folders)" -eq 1 ] || fail "no folder, which this test is about"
-kill -9 "$(cat killed.pid)"
-wait "$(cat killed.pid)" 2>/dev/null || true
+power_cut killed
 rm killed.pid
 [ "$(folders)" -eq 1 ] || fail "the killed one took its folder along"
 

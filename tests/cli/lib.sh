@@ -86,3 +86,9 @@ serve() {
   cat "$dir.log"
   fail "controller in $dir does not answer"
 }
+# power_cut NAME: the controller of folder NAME is gone, at whatever instruction it is, and has let
+# go of its folder: a signal alone is only on its way.
+power_cut() {
+  kill -9 "$(cat "$work/$1.pid")"
+  wait "$(cat "$work/$1.pid")" 2>/dev/null || true
+}

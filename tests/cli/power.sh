@@ -16,17 +16,13 @@ ST
 }
 for n in 1 2 3; do version $n; done
 
-kill_now() {
-  kill -9 "$(cat plc.pid)"
-  while kill -0 "$(cat plc.pid)" 2>/dev/null; do sleep 0.02; done
-}
 number() { stvm get "$1" --dir plc --format json | sed 's/.*"value" *: *"\{0,1\}\(-\{0,1\}[0-9]*\).*/\1/' | tr -dc '0-9-'; }
 above() { [ "$(number total)" -ge "$1" ] || fail "total is $(number total), not $1 or more"; }
 
 serve plc v1.st
 expect 0 stvm set total=100000 Main.scans=1000000 --dir plc
 wait_saved plc
-kill_now
+power_cut plc
 serve plc
 above 100000
 [ "$(number Main.scans)" -lt 1000000 ] || fail "scans is not retained"
@@ -37,7 +33,7 @@ said 'started'
 expect 0 stvm change v2.st --dir plc --yes --allow-loss
 expect 0 stvm set total=200000 --dir plc
 wait_saved plc
-kill_now
+power_cut plc
 expect 0 stvm journal --dir plc
 said 'switched'
 serve plc
@@ -55,7 +51,7 @@ said 'trial lost'
 expect 0 stvm change v2.st --dir plc --yes --allow-loss
 expect 0 stvm set total=300000 --dir plc
 expect 0 stvm accept --dir plc
-kill_now
+power_cut plc
 serve plc
 above 300000
 expect 0 stvm get 'more[3]' --dir plc
@@ -66,7 +62,7 @@ grep -q trial_lost out && fail "no trial was lost"
 expect 0 stvm change v3.st --dir plc --yes --allow-loss
 expect 0 stvm set total=400000 --dir plc
 expect 0 stvm undo --dir plc
-kill_now
+power_cut plc
 serve plc
 above 400000
 expect 0 stvm get 'more[3]' --dir plc
@@ -84,7 +80,7 @@ expect 0 stvm stop --dir plc
 # Another program on the command line takes the values over.
 serve plc v3.st
 above 500000
-kill_now
+power_cut plc
 
 # case56: no program is intact. The controller answers, and takes one with its retained values.
 stc build v3.st -o v3.img 2>/dev/null
@@ -118,17 +114,17 @@ said 'v3: running'
 above 600000
 expect 0 stvm journal --dir plc
 said 'installed .* by '
-kill_now
+power_cut plc
 serve plc
 above 600000
-kill_now
+power_cut plc
 damage_slots
 serve plc v1.st
 expect 0 stvm status --dir plc
 said 'alarm: cold start'
 expect 0 stvm get old_only --dir plc
 said '=7'
-kill_now
+power_cut plc
 for file in control_0 control_1 retain_0 retain_1 retain_2 journal traps; do
   head -c 3000 /dev/urandom >plc/$file
 done

@@ -32,8 +32,7 @@ for strategy in in-place standby; do
   # It can be brought again, and the journal is there after the process was killed.
   expect 0 stvm redo --dir $strategy --yes --allow-overrun
   expect 0 stvm undo --skip-exit --dir $strategy --yes
-  kill -KILL "$(cat "$strategy.pid")"
-  wait "$(cat "$strategy.pid")" 2>/dev/null || true
+  power_cut $strategy
   serve $strategy
   expect 0 stvm journal --dir $strategy
   said 'without FB_Exit of Main.a'
