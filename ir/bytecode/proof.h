@@ -12,6 +12,7 @@
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/image_beside.h"
 #include "ir/bytecode/verify.h"
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/verify_parts.h"
 
 namespace ir::verification {
@@ -25,6 +26,7 @@ struct Proof {
   std::shared_ptr<const std::vector<uint32_t>> areas;
   CodeFactsOfAll code;
   std::vector<OutputWriter> writers;
+  NamesOnDemand names;
 };
 
 // All rules, without those whose answer `like` knows; null: it knows none.

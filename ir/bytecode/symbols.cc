@@ -1,11 +1,8 @@
-// Finding variables by path and walking all of them. The child of an instance is
-// found through the ID in the slot's initial data, which never changes while the
-// slot lives, so no search over the instance table is needed.
+// Finding variables by path.
 #include "ir/bytecode/symbols.h"
 
-#include "base/limits.h"
-#include "ir/bytecode/leaf_walk.h"
-#include "ir/bytecode/regions.h"
+#include "ir/bytecode/name_index.h"
+#include "ir/bytecode/symbol_steps.h"
 #include "ir/types/inside.h"
 #include "ir/types/listed_name.h"
 #include "ir/types/shared_bytes.h"
@@ -15,28 +12,6 @@ namespace {
 
 base::Error no_such(std::string_view path, const std::string& why) {
   return {base::Refusal::kNoSuchVariable, "`" + std::string(path) + "`: " + why};
-}
-
-// Steps into the instance whose ID is in the slot at symbol.data; false when there is none.
-bool enter(const Image& image, Symbol& symbol) {
-  const uint32_t id = initial_id(image, symbol.data);
-  if (id == 0 || id >= image.instances.size() || !image.instances[id].live) return false;
-  if (image.instances[id].type != symbol.type) return false;
-  symbol.data = image.instances[id].data;
-  return true;
-}
-
-Symbol member_of(const Image& image, const Symbol& owner, size_t number) {
-  const Member& member = image.types[owner.type].members[number];
-  Symbol symbol = owner;
-  symbol.data += image.layouts[owner.type].member_offsets[number];
-  symbol.type = member.type;
-  symbol.constant |= member.constant;
-  symbol.retain |= member.retain;
-  symbol.input |= member.address.area == DirectArea::kInput;
-  symbol.output |= member.address.area == DirectArea::kOutput;
-  symbol.bit_mask = bit_mask_of(image.types, owner.type, member);
-  return symbol;
 }
 
 // BIT members that share a byte are one member, with the names of all of them. What to write
@@ -55,10 +30,51 @@ std::string byte_of_bit(const Type& owner, std::string_view name) {
   return {};
 }
 
-// Reads a path from left to right.
+// The same questions asked of the tables themselves, one row after the other.
+class Tables {
+ public:
+  explicit Tables(const Image& image) : image_(image) {}
+
+  const Image& image() const { return image_; }
+  int32_t find_member(TypeId type, std::string_view name) const {
+    return image_.types.find_member(type, name);
+  }
+  std::optional<SharedMember> find_shared(std::string_view name) const {
+    return ir::find_shared(image_.types, image_.globals, name);
+  }
+  std::string_view listed_name(std::string_view path) const {
+    return ir::listed_name(image_.types, image_.globals, path);
+  }
+  uint32_t find_program(std::string_view name) const {
+    for (uint32_t id = 1; id < image_.instances.size(); ++id) {
+      const Instance& row = image_.instances[id];
+      const bool program = row.live && image_.types.is_instance(row.type) &&
+                           image_.types[row.type].kind == Kind::kProgram;
+      if (program && same_name(row.name, name)) return id;
+    }
+    return 0;
+  }
+  // VAR_ACCESS: another name for a variable, or for what its members begin with.
+  const AccessPath* access_path(std::string_view path) const {
+    for (const AccessPath& access : image_.access) {  // `Main.x`, too: another name for one place
+      const size_t size = access.name.size();
+      const bool ends =
+          size == path.size() || (size < path.size() && (path[size] == '.' || path[size] == '['));
+      if (ends && same_name(access.name, path.substr(0, size))) return &access;
+    }
+    return nullptr;
+  }
+
+ private:
+  const Image& image_;
+};
+
+// Reads a path from left to right. `Names`: Tables, or a NameIndex.
+template <typename Names>
 class PathReader {
  public:
-  PathReader(const Image& image, std::string_view path) : image_(image), path_(path) {}
+  PathReader(const Names& names, std::string_view path)
+      : names_(names), image_(names.image()), path_(path) {}
 
   base::Result<Symbol> run() {
     Symbol symbol;
@@ -87,18 +103,16 @@ class PathReader {
     const std::string_view text = name();
     // Globals that are visible as `List.x` or `A.B.x` only have that name, and so have static
     // variables: a program may be called as its instance is.
-    const std::string_view listed = listed_name(image_.types, image_.globals, path_);
+    const std::string_view listed = names_.listed_name(path_);
     std::string_view next = listed.empty() ? listed : listed.substr(text.size() + 1);
     next = next.substr(0, next.find('.'));
-    for (uint32_t id = 1; id < image_.instances.size(); ++id) {
+    if (const uint32_t id = names_.find_program(text); id != 0) {
       const Instance& row = image_.instances[id];
-      const bool program = row.live && image_.types.is_instance(row.type) &&
-                           image_.types[row.type].kind == Kind::kProgram;
-      if (!program || !same_name(row.name, text)) continue;
-      if (!listed.empty() && image_.types.find_member(row.type, next) < 0) break;
-      symbol.data = row.data;
-      symbol.type = row.type;
-      return base::Ok{};
+      if (listed.empty() || names_.find_member(row.type, next) >= 0) {
+        symbol.data = row.data;
+        symbol.type = row.type;
+        return base::Ok{};
+      }
     }
     symbol.type = image_.globals;
     symbol.data = image_.instances.empty() ? 0 : image_.instances[0].data;
@@ -111,11 +125,11 @@ class PathReader {
 
   // A global `name` with a member `next`. A program that others call is among the globals too.
   bool global_has(std::string_view name, std::string_view next) const {
-    const int32_t number = image_.types.find_member(image_.globals, name);
+    const int32_t number = names_.find_member(image_.globals, name);
     if (number < 0) return false;
     const Member& global = image_.types[image_.globals].members[static_cast<size_t>(number)];
     return image_.types[global.type].kind != Kind::kProgram ||
-           image_.types.find_member(global.type, next) >= 0;
+           names_.find_member(global.type, next) >= 0;
   }
 
   base::Status read_member(Symbol& symbol) {
@@ -127,9 +141,9 @@ class PathReader {
   }
 
   base::Status step_to(Symbol& symbol, std::string_view text, const std::string& why) {
-    int32_t number = image_.types.find_member(symbol.type, text);
+    int32_t number = names_.find_member(symbol.type, text);
     if (number < 0 && symbol.type == image_.globals) {
-      if (const auto shared = find_shared(image_.types, image_.globals, text)) {
+      if (const auto shared = names_.find_shared(text)) {
         symbol = member_of(image_, symbol, shared->global);
         number = static_cast<int32_t>(shared->member);
       }
@@ -196,143 +210,30 @@ class PathReader {
     return true;
   }
 
+  const Names& names_;
   const Image& image_;
   std::string_view path_;
   size_t at_ = 0;
 };
 
-// Visits leaves in declaration order. Depth is bounded because an image that was
-// not verified may hold instances that contain themselves.
-class LeafWalk {
- public:
-  using Visit = std::function<bool(const std::string&, const Symbol&)>;
-  // Without the first `skip` leaves; until a visit is false.
-  LeafWalk(const Image& image, uint64_t skip, const Visit& visit)
-      : image_(image), skip_(skip), visit_(visit) {}
-
-  void walk(const Symbol& symbol, uint32_t depth) {
-    const Type& type = image_.types[symbol.type];
-    if (depth > base::kMaxNesting) return;
-    if (type.kind == Kind::kArray) return elements(symbol, depth);
-    if (image_.types.has_members(symbol.type)) return members(symbol, depth);
-    if (skip_ != 0) {
-      --skip_;
-    } else {
-      ended_ = !visit_(path_, symbol);
-    }
-  }
-
-  bool ended() const { return ended_; }
-
-  void root(const Symbol& symbol, std::string_view name) {
-    path_ = name;
-    walk(symbol, 0);
-  }
-
- private:
-  // A program among the globals comes later, as itself.
-  void part(Symbol symbol, uint32_t depth) {
-    if (image_.types[symbol.type].kind == Kind::kProgram) return;
-    if (!image_.types.is_instance(symbol.type) || enter(image_, symbol)) walk(symbol, depth + 1);
-  }
-
-  void members(const Symbol& symbol, uint32_t depth) {
-    const size_t length = path_.size();
-    const Type& type = image_.types[symbol.type];
-    for (size_t i = 0; i < type.members.size() && !ended_; ++i) {
-      if (!is_listed(type.members[i])) continue;
-      if (is_shared(image_.types, type.members[i])) {  // its members have paths of their own
-        part(member_of(image_, symbol, i), depth);
-        continue;
-      }
-      if (length != 0) path_ += '.';
-      path_ += type.members[i].name;
-      part(member_of(image_, symbol, i), depth);
-      path_.resize(length);
-    }
-  }
-
-  void elements(const Symbol& symbol, uint32_t depth) {
-    const size_t length = path_.size();
-    const Type& type = image_.types[symbol.type];
-    const uint32_t stride = image_.layouts[type.base].size;
-    std::vector<int64_t> index;
-    uint64_t count = 1;
-    for (const Dimension& dim : type.dims) {
-      index.push_back(dim.low);
-      count *= dim.count();
-    }
-    Symbol element = symbol;
-    element.type = type.base;
-    uint64_t flat = is_leaf(type.base) ? std::min(skip_, count) : 0;
-    skip_ -= flat;
-    element.data += static_cast<uint32_t>(flat * stride);
-    set_index(type, flat, index);
-    for (; flat < count && !ended_; ++flat, element.data += stride) {
-      append_index(index);
-      part(element, depth);
-      path_.resize(length);
-      advance(type, index);
-    }
-  }
-
-  bool is_leaf(TypeId id) const {
-    return image_.types[id].kind != Kind::kArray && !image_.types.has_members(id);
-  }
-
-  static void set_index(const Type& type, uint64_t flat, std::vector<int64_t>& index) {
-    for (size_t dim = index.size(); dim-- > 0; flat /= type.dims[dim].count()) {
-      index[dim] = type.dims[dim].low + static_cast<int64_t>(flat % type.dims[dim].count());
-    }
-  }
-
-  void append_index(const std::vector<int64_t>& index) {
-    char separator = '[';
-    for (int64_t i : index) {
-      path_ += separator + std::to_string(i);
-      separator = ',';
-    }
-    path_ += ']';
-  }
-
-  static void advance(const Type& type, std::vector<int64_t>& index) {
-    for (size_t dim = index.size(); dim-- > 0;) {
-      if (index[dim] != type.dims[dim].high) {
-        ++index[dim];
-        return;
-      }
-      index[dim] = type.dims[dim].low;
-    }
-  }
-
-  const Image& image_;
-  uint64_t skip_;
-  const Visit& visit_;
-  bool ended_ = false;
-  std::string path_;
-};
+template <typename Names>
+base::Result<Symbol> find_by(const Names& names, std::string_view path) {
+  const AccessPath* const access = names.access_path(path);
+  if (access == nullptr) return PathReader(names, path).run();
+  const std::string whole = access->path + std::string(path.substr(access->name.size()));
+  base::Result<Symbol> symbol = PathReader(names, whole).run();
+  if (symbol.ok()) symbol->constant |= !access->writable;
+  return symbol;
+}
 
 }  // namespace
 
-// VAR_ACCESS: another name for a variable, or for what its members begin with.
-const AccessPath* access_path(const Image& image, std::string_view path) {
-  for (const AccessPath& access : image.access) {  // `Main.x`, too: another name for one place
-    const size_t size = access.name.size();
-    const bool ends =
-        size == path.size() || (size < path.size() && (path[size] == '.' || path[size] == '['));
-    if (ends && same_name(access.name, path.substr(0, size))) return &access;
-  }
-  return nullptr;
+base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
+  return find_by(Tables(image), path);
 }
 
-base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
-  if (const AccessPath* access = access_path(image, path)) {
-    const std::string whole = access->path + std::string(path.substr(access->name.size()));
-    base::Result<Symbol> symbol = PathReader(image, whole).run();
-    if (symbol.ok()) symbol->constant |= !access->writable;
-    return symbol;
-  }
-  return PathReader(image, path).run();
+base::Result<Symbol> find_symbol(const NameIndex& names, std::string_view path) {
+  return find_by(names, path);
 }
 
 std::string type_text(const Image& image, const Symbol& symbol) {
@@ -351,30 +252,6 @@ std::string path_of(const Image& image, const Symbol& symbol) {
     return image.instance_path(id) + inside;
   }
   return {};
-}
-
-void for_each_leaf(const Image& image,
-                   const std::function<void(const std::string& path, const Symbol&)>& visit) {
-  for_each_leaf_from(image, 0, [&](const std::string& path, const Symbol& symbol) {
-    visit(path, symbol);
-    return true;
-  });
-}
-
-void for_each_leaf_from(const Image& image, uint64_t first,
-                        const std::function<bool(const std::string&, const Symbol&)>& visit) {
-  LeafWalk walk(image, first, visit);
-  Symbol globals;
-  globals.type = image.globals;
-  globals.data = image.instances.empty() ? 0 : image.instances[0].data;
-  walk.root(globals, "");
-  for (uint32_t id : image.program_ids()) {
-    if (walk.ended()) return;
-    Symbol program;
-    program.type = image.instances[id].type;
-    program.data = image.instances[id].data;
-    walk.root(program, image.instances[id].name);
-  }
 }
 
 }  // namespace ir

@@ -35,6 +35,8 @@ inline bool same_place(const Symbol& a, const Symbol& b) {
 std::string type_text(const Image& image, const Symbol& symbol);
 
 base::Result<Symbol> find_symbol(const Image& image, std::string_view path);
+class NameIndex;  // name_index.h
+base::Result<Symbol> find_symbol(const NameIndex& names, std::string_view path);
 
 // The path by which a variable is found, from its place and type; an access path names it as well.
 std::string path_of(const Image& image, const Symbol& symbol);

@@ -3,6 +3,7 @@
 #include "base/joined.h"
 #include "base/nearest_name.h"
 #include "ir/bytecode/leaf_walk.h"
+#include "ir/bytecode/name_index.h"
 #include "ir/types/address_text.h"
 #include "ir/types/location.h"
 #include "ir/types/shared_bytes.h"
@@ -25,11 +26,12 @@ size_t end_of_part(std::string_view path, size_t at) {
 
 // What the first part that is not there was meant to be. Globals of lists and namespaces have a dot
 // in their name, so they are compared with as much of the path.
-std::string meant(const Image& image, std::string_view path) {
+std::string meant(const NameIndex& names, std::string_view path) {
+  const Image& image = names.image();
   TypeId owner = image.globals;
   size_t at = 0;
   for (size_t end = end_of_part(path, 0); end < path.size(); end = end_of_part(path, end + 1)) {
-    const base::Result<Symbol> symbol = find_symbol(image, path.substr(0, end));
+    const base::Result<Symbol> symbol = find_symbol(names, path.substr(0, end));
     if (!symbol.ok()) continue;
     owner = symbol->type;
     at = end + 1;
@@ -45,7 +47,7 @@ std::string meant(const Image& image, std::string_view path) {
     (member.name.find('.') == std::string::npos ? nearest : listed).offer(member.name);
   }
   if (at == 0) {
-    for (uint32_t id : image.program_ids()) {
+    for (uint32_t id : names.programs()) {
       nearest.offer(image.instances[id].name);
       nearest.offer(image.types[image.instances[id].type].name);
     }
@@ -85,12 +87,13 @@ base::Result<std::string> located(const Image& image, std::string_view name,
 }
 
 // The path with the instance's name in place of its PROGRAM's; "": it begins with none.
-base::Result<std::string> by_program(const Image& image, std::string_view path) {
+base::Result<std::string> by_program(const NameIndex& names, std::string_view path) {
+  const Image& image = names.image();
   const std::string_view declared = path.substr(0, path.find_first_of(".["));
   std::string instances;
   std::string found;
   uint32_t count = 0;
-  for (uint32_t id : image.program_ids()) {
+  for (uint32_t id : names.programs()) {
     const Instance& row = image.instances[id];
     if (!same_name(image.types[row.type].name, declared)) continue;
     if (count++ != 0) instances += ", ";
@@ -99,25 +102,36 @@ base::Result<std::string> by_program(const Image& image, std::string_view path) 
   }
   if (count < 2) return found;
   return not_there(path, {"`", declared, "` has ", std::to_string(count),
-                        " instances; name one of them: ", instances});
+                          " instances; name one of them: ", instances});
 }
 
 }  // namespace
 
-base::Result<std::string> path_of_name(const Image& image, std::string_view name) {
-  if (const auto address = parse_address(name)) return located(image, name, *address);
-  const base::Result<Symbol> symbol = find_symbol(image, name);
-  if (symbol.ok()) return std::string(name);
-  base::Result<std::string> other = by_program(image, name);
-  if (!other.ok()) return other;
-  const bool better = !other->empty() && find_symbol(image, *other).ok();
-  if (better) return other;
-  return base::Error{symbol.error().refusal, symbol.error().text + meant(image, name)};
+base::Result<NamedSymbol> named_symbol(const NameIndex& names, std::string_view name) {
+  const auto found_at = [&](std::string path) -> base::Result<NamedSymbol> {
+    base::Result<Symbol> symbol = find_symbol(names, path);
+    if (!symbol.ok()) return symbol.error();
+    return NamedSymbol{std::move(path), *symbol};
+  };
+  if (const auto address = parse_address(name)) {
+    base::Result<std::string> path = located(names.image(), name, *address);
+    return path.ok() ? found_at(std::move(*path)) : path.error();
+  }
+  base::Result<NamedSymbol> found = found_at(std::string(name));
+  if (found.ok()) return found;
+  base::Result<std::string> other = by_program(names, name);
+  if (!other.ok()) return other.error();
+  if (!other->empty()) {
+    base::Result<NamedSymbol> better = found_at(std::move(*other));
+    if (better.ok()) return better;
+  }
+  return base::Error{found.error().refusal, found.error().text + meant(names, name)};
 }
 
 base::Result<Symbol> named_symbol(const Image& image, std::string_view name) {
-  const base::Result<std::string> path = path_of_name(image, name);
-  return path.ok() ? find_symbol(image, *path) : path.error();
+  base::Result<NamedSymbol> found = named_symbol(NameIndex(image), name);
+  if (!found.ok()) return found.error();
+  return found->symbol;
 }
 
 }  // namespace ir

@@ -12,10 +12,14 @@
 
 namespace ir {
 
-// What find_symbol() takes for `name`; the name itself where it is a path. kNoSuchVariable says
-// which part is not there, and which one was meant, perhaps.
-base::Result<std::string> path_of_name(const Image& image, std::string_view name);
-// The variable itself.
+// `path`: what find_symbol() takes for the name; the name itself where it is a path.
+struct NamedSymbol {
+  std::string path;
+  Symbol symbol;
+};
+// kNoSuchVariable says which part is not there, and which one was meant, perhaps.
+base::Result<NamedSymbol> named_symbol(const NameIndex& names, std::string_view name);
+// For one name: it goes through all of the image's names.
 base::Result<Symbol> named_symbol(const Image& image, std::string_view name);
 
 }  // namespace ir

@@ -141,6 +141,8 @@ base::Result<std::shared_ptr<const Proof>> prove(std::shared_ptr<const base::Byt
 
 }  // namespace verification
 
+const NameIndex& VerifiedImage::names() const { return names_->of(*image_); }
+
 base::Result<VerifiedImage> verify(base::Bytes encoded) {
   return verify(std::make_shared<const base::Bytes>(std::move(encoded)));
 }
@@ -154,6 +156,7 @@ base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded) {
   VerifiedImage verified;
   verified.image_ = {proof, &proof->image};
   verified.output_writers_ = {proof, &proof->writers};
+  verified.names_ = {proof, &proof->names};
   verified.encoded_ = proof->encoded;
   verified.digest_ = digest(*proof->encoded);
   return verified;

@@ -22,12 +22,17 @@ struct OutputWriter {
   uint32_t task = 0;
 };
 
+class NameIndex;      // name_index.h
+class NamesOnDemand;
+
 class VerifiedImage {
  public:
   const Image& image() const { return *image_; }
   const base::Digest& digest() const { return digest_; }
   const base::Bytes& encoded() const { return *encoded_; }
   const std::vector<OutputWriter>& output_writers() const { return *output_writers_; }
+  // Made when it is asked for first, in time linear in the names.
+  const NameIndex& names() const;
 
  private:
   friend base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded);
@@ -35,6 +40,7 @@ class VerifiedImage {
   std::shared_ptr<const Image> image_;
   std::shared_ptr<const base::Bytes> encoded_;
   std::shared_ptr<const std::vector<OutputWriter>> output_writers_;
+  std::shared_ptr<const NamesOnDemand> names_;
   base::Digest digest_{};
 };
 

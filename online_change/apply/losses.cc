@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/visible_text.h"
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/types/address_text.h"
 #include "online_change/apply/live_value.h"
@@ -120,6 +121,8 @@ uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,
                        const ir::Image& new_image, std::span<const uint8_t> memory, size_t most,
                        std::vector<LiveLoss>& rows) {
   uint64_t count = 0;
+  const ir::NamesOnDemand old_names;
+  const ir::NamesOnDemand new_names;
   for (const LostPlaces::Row& place : places.rows) {
     const std::vector<uint32_t>& group = places.groups[place.group];
     const uint64_t all = group.size() * place.elements;
@@ -131,8 +134,8 @@ uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,
       const uint32_t id = group[i / place.elements];
       std::string path = element_of(place.inside, i % place.elements);
       if (id != 0) path = old_image.instance_path(id) + path;
-      const base::Result<ir::Symbol> before = ir::find_symbol(old_image, path);
-      const base::Result<ir::Symbol> next = ir::find_symbol(new_image, path);
+      const base::Result<ir::Symbol> before = ir::find_symbol(old_names.of(old_image), path);
+      const base::Result<ir::Symbol> next = ir::find_symbol(new_names.of(new_image), path);
       const bool lost = !place.constant || !before.ok() || !next.ok() ||
                         !is_constant_already(old_image, *before, memory, new_image, *next);
       if (!lost) continue;

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "base/limits.h"
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/diff/instance_match.h"
 
@@ -80,7 +81,7 @@ class Finder {
     const uint32_t id = instance_of(row.path, inside);
     LostPlaces::Row place{row.fate == Fate::kDropped, group_of_[id], std::move(inside)};
     place.elements = elements_in(place.inside);
-    const base::Result<ir::Symbol> next = ir::find_symbol(new_, row.path);
+    const base::Result<ir::Symbol> next = ir::find_symbol(new_names_.of(new_), row.path);
     place.constant = row.fate == Fate::kInitialised && next.ok() && next->constant;
     out_.rows.push_back(std::move(place));
   }
@@ -132,6 +133,7 @@ class Finder {
 
   const ir::Image& old_;
   const ir::Image& new_;
+  ir::NamesOnDemand new_names_;
   InstanceMatch match_;
   std::vector<uint32_t> retyped_to_;  // by old ID
   std::vector<uint32_t> group_of_;    // by old ID

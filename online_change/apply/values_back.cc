@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/apply/plan_edit.h"
 #include "online_change/diff/areas.h"
@@ -85,13 +86,16 @@ class WayBack {
 
 // What has come of what the edit made at `offset`, in the version that runs; nullopt: a later edit
 // knows no such variable, or another one.
-std::optional<ir::Symbol> still_there(const TakenEdit& edit, const Areas& made, uint32_t offset) {
+std::optional<ir::Symbol> still_there(const TakenEdit& edit,
+                                      const std::vector<ir::NamesOnDemand>& names,
+                                      const Areas& made, uint32_t offset) {
   const std::optional<Node> leaf = made.leaf_at(offset);
   if (!leaf || leaf->begin != offset) return std::nullopt;
   const std::string path = made.path_at(offset);
   std::optional<ir::Symbol> now;
-  for (const ir::Image* const image : edit.later) {
-    const base::Result<ir::Symbol> found = ir::find_symbol(*image, path);
+  for (size_t i = 0; i < names.size(); ++i) {
+    const ir::Image* const image = edit.later[i];
+    const base::Result<ir::Symbol> found = ir::find_symbol(names[i].of(*image), path);
     const bool same = found.ok() && found->bit_mask == 0 &&
                       ir::same_value_type(edit.after.types, edit.after.layouts, leaf->type,
                                           image->types, image->layouts, found->type);
@@ -107,12 +111,14 @@ uint64_t put_values_back(Plan& plan, const ir::Image& next, const TakenEdit& edi
   const WayBack way_back(edit);
   const Areas made(edit.after);
   PlanEdit changed(plan, *edit.later.back(), next);
+  const ir::NamesOnDemand names;
+  const std::vector<ir::NamesOnDemand> later_names(edit.later.size());
   ir::for_each_leaf(edit.before, [&](const std::string& path, const ir::Symbol& there) {
     const uint32_t size = edit.before.layouts[there.type].size;
     const std::optional<WayBack::Value> value = way_back.at(there.data, size);
     if (!value || there.bit_mask != 0) return;
     if (ir::is_reference(edit.before.types[there.type].kind)) return;
-    const base::Result<ir::Symbol> here = ir::find_symbol(next, path);
+    const base::Result<ir::Symbol> here = ir::find_symbol(names.of(next), path);
     if (!here.ok() || here->bit_mask != 0) return;
     if (!ir::same_value_type(edit.before.types, edit.before.layouts, there.type, next.types,
                              next.layouts, here->type)) {
@@ -121,7 +127,7 @@ uint64_t put_values_back(Plan& plan, const ir::Image& next, const TakenEdit& edi
     if (!value->converted) {
       changed.initialise(here->data, {value->before, size});
     } else if (value->made != nullptr) {
-      const std::optional<ir::Symbol> now = still_there(edit, made, value->from);
+      const std::optional<ir::Symbol> now = still_there(edit, later_names, made, value->from);
       if (now) changed.convert(*now, path, *here, {value->made, value->made_size}, value->before);
     }
   });

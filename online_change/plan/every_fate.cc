@@ -16,8 +16,9 @@ std::string alone(std::string reason) {
 }
 
 // Is it a variable with a value of its own, not something that has such variables?
-bool is_leaf(const ir::Image& image, const std::string& path) {
-  const base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+bool is_leaf(const ir::NameIndex& names, const std::string& path) {
+  const base::Result<ir::Symbol> symbol = ir::find_symbol(names, path);
+  const ir::Image& image = names.image();
   return symbol.ok() && image.types[symbol->type].kind != ir::Kind::kArray &&
          !image.types.has_members(symbol->type);
 }
@@ -25,7 +26,13 @@ bool is_leaf(const ir::Image& image, const std::string& path) {
 }  // namespace
 
 EveryFate::EveryFate(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image)
-    : plan_(plan), old_(old_image), new_(new_image), old_areas_(old_image), new_areas_(new_image) {
+    : plan_(plan),
+      old_(old_image),
+      new_(new_image),
+      old_names_(old_image),
+      new_names_(new_image),
+      old_areas_(old_image),
+      new_areas_(new_image) {
   for (uint32_t number = 0; number < plan.steps.size(); ++number) {
     const UpdateStep& step = plan.steps[number];
     const std::optional<CopiedValues> source = step.source();
@@ -91,7 +98,7 @@ std::string EveryFate::reason_of(uint32_t row) const {
 
 // The variable of the old version that lies there; of several (a union), that of the same name.
 void EveryFate::name_old(VariableFate& out, uint32_t address) const {
-  base::Result<ir::Symbol> same = ir::find_symbol(old_, out.path);
+  base::Result<ir::Symbol> same = ir::find_symbol(old_names_, out.path);
   if (same.ok() && same->data == address) {
     out.old_address = address;
     out.old_type = same->type;
@@ -126,11 +133,11 @@ VariableFate EveryFate::of_new(const std::string& path, const ir::Symbol& symbol
   if (has_source) {
     name_old(out, value->from + (symbol.data - value->to));
   } else if (out.gather != nullptr) {
-    const base::Result<ir::Symbol> same = ir::find_symbol(old_, path);
+    const base::Result<ir::Symbol> same = ir::find_symbol(old_names_, path);
     const std::optional<uint32_t> from = gathered_from(*value, symbol.data);
     if (from && same.ok() && same->data == *from) name_old(out, *from);
-  } else if (is_leaf(old_, path)) {
-    const base::Result<ir::Symbol> before = ir::find_symbol(old_, path);
+  } else if (is_leaf(old_names_, path)) {
+    const base::Result<ir::Symbol> before = ir::find_symbol(old_names_, path);
     out.old_address = before->data;
     out.old_type = before->type;
     out.loses = out.fate == Fate::kInitialised && !before->constant && !before->input;
@@ -156,9 +163,9 @@ bool EveryFate::goes_on(const std::string& path, const ir::Symbol& symbol) const
   const std::optional<Node> whole = old_areas_.leaf_at(address);
   if (whole && old_.types.overlaps(whole->type)) {  // is the same member where the union is now?
     const std::string around = old_areas_.path_at(address);
-    return path.size() > around.size() && is_leaf(new_, there + path.substr(around.size()));
+    return path.size() > around.size() && is_leaf(new_names_, there + path.substr(around.size()));
   }
-  base::Result<ir::Symbol> before = ir::find_symbol(old_, there);
+  base::Result<ir::Symbol> before = ir::find_symbol(old_names_, there);
   return !before.ok() || before->data != address;
 }
 
@@ -191,7 +198,7 @@ uint64_t EveryFate::visit_from(uint64_t first, const Visit& visit) const {
                              return false;
                            }
                            ++next;
-                           if (is_leaf(new_, path) || goes_on(path, symbol)) return true;
+                           if (is_leaf(new_names_, path) || goes_on(path, symbol)) return true;
                            VariableFate gone;
                            gone.fate = Fate::kDropped;
                            gone.path = path;

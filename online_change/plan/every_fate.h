@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/symbols.h"
 #include "online_change/diff/areas.h"
 #include "online_change/plan/plan.h"
@@ -60,6 +61,8 @@ class EveryFate {
   const Plan& plan_;
   const ir::Image& old_;
   const ir::Image& new_;
+  ir::NameIndex old_names_;
+  ir::NameIndex new_names_;
   Areas old_areas_;
   Areas new_areas_;
   std::vector<Written> by_target_;

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "ir/bytecode/embedded_sources.h"
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/renames.h"
 #include "ir/bytecode/symbols.h"
 #include "linker/merge.h"
@@ -70,7 +71,19 @@ struct Plant {
   std::unique_ptr<vm::Controller> controller;  // null: it was refused
 };
 
+// A look into the table of names gives what a walk over the image does.
+void find_by_both(const ir::NameIndex& names, const std::string& path) {
+  const base::Result<ir::Symbol> walked = ir::find_symbol(names.image(), path);
+  const base::Result<ir::Symbol> looked = ir::find_symbol(names, path);
+  base::check(walked.ok() == looked.ok(), "a name is there for both");
+  if (!walked.ok()) return base::check(walked.error().text == looked.error().text, "one reason");
+  base::check(ir::same_place(*walked, *looked) && walked->type == looked->type &&
+                  walked->constant == looked->constant,
+              "a name is one variable for both");
+}
+
 void read_values(const ir::Image& image) {
+  const ir::NameIndex names(image);
   std::vector<uint8_t> memory(image.data_capacity);
   for (const ir::DataRun& run : image.data) {
     std::copy(run.bytes.begin(), run.bytes.end(), memory.begin() + run.offset);
@@ -78,6 +91,8 @@ void read_values(const ir::Image& image) {
   base::check(ir::state_text(image, memory).size() != 1, "lines of values");
   ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
     const base::Result<ir::Symbol> found = ir::find_symbol(image, path);
+    find_by_both(names, path);
+    find_by_both(names, path.substr(0, path.rfind('.')));
     if (answered(found)) ir::path_of(image, *found);
     ir::format_value(image, symbol, memory);
     if (const auto value = ir::parse_value(image, symbol.type, "1"); !value.ok()) {

@@ -1,6 +1,7 @@
 // What is read and written of the running program's variables.
 #include <algorithm>
 
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/variable_names.h"
 #include "tools/stvm/controller_service.h"
 
@@ -20,19 +21,20 @@ base::Error other_version() { return {base::Refusal::kStaleBase, "another versio
 using NamedValues = std::vector<vm::NamedValue>;
 
 // Names become paths here: a force is kept by its path, which is the same after a change.
-base::Result<std::vector<std::string>> paths_of(const ir::Image& image,
+base::Result<std::vector<std::string>> paths_of(const ir::VerifiedImage& version,
                                                 const vm::Request& request) {
   std::vector<std::string> paths;
   for (const std::string& name : request.names) {
-    base::Result<std::string> path = ir::path_of_name(image, name);
-    if (!path.ok()) return path.error();
-    paths.push_back(std::move(*path));
+    base::Result<ir::NamedSymbol> named = ir::named_symbol(version.names(), name);
+    if (!named.ok()) return named.error();
+    paths.push_back(std::move(named->path));
   }
   return paths;
 }
 
-base::Result<NamedValues> named_values(const ir::Image& image, const vm::Request& request) {
-  base::Result<std::vector<std::string>> paths = paths_of(image, request);
+base::Result<NamedValues> named_values(const ir::VerifiedImage& version,
+                                       const vm::Request& request) {
+  base::Result<std::vector<std::string>> paths = paths_of(version, request);
   if (!paths.ok()) return paths.error();
   NamedValues values;
   for (size_t i = 0; i < paths->size(); ++i) {
@@ -58,10 +60,6 @@ std::string assignments_text(const NamedValues& values) {
   std::vector<std::string> rows;
   for (const vm::NamedValue& value : values) rows.push_back(value.path + "=" + value.value);
   return list_text(rows);
-}
-
-vm::ValueRow value_row(const ir::Image& image, const std::string& path, const ir::Symbol& symbol) {
-  return {path, ir::type_text(image, symbol), {}};
 }
 
 }  // namespace
@@ -98,14 +96,12 @@ base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
   vm::Values values;
   std::vector<ir::Symbol> symbols;
   ir::ValueRanges ranges(image, vm::kMaxReadBytes);
-  base::Result<std::vector<std::string>> paths = paths_of(image, request);
-  if (!paths.ok()) return paths.error();
-  for (const std::string& name : *paths) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(image, name);
-    if (!symbol.ok()) return symbol.error();
-    if (!ranges.add(*symbol)) return too_much(name);
-    symbols.push_back(*symbol);
-    values.rows.push_back(value_row(image, name, *symbol));
+  for (const std::string& name : request.names) {
+    base::Result<ir::NamedSymbol> named = ir::named_symbol(version.names(), name);
+    if (!named.ok()) return named.error();
+    if (!ranges.add(named->symbol)) return too_much(named->path);
+    symbols.push_back(named->symbol);
+    values.rows.push_back({std::move(named->path), ir::type_text(image, named->symbol), {}});
   }
   base::Result<vm::LiveCopy> copy = copy_of(ranges.take());
   if (!copy.ok()) return copy.error();
@@ -123,7 +119,7 @@ base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
 
 // All or none: a mistake in the last of several is found before the first is written.
 base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
-  base::Result<NamedValues> values = named_values(controller_.image(), request);
+  base::Result<NamedValues> values = named_values(controller_.verified(), request);
   if (!values.ok()) return values.error();
   base::Result<vm::WriteSet> set = controller_.prepare_set(*values);
   if (!set.ok()) return set.error();
@@ -147,7 +143,7 @@ base::Result<base::Bytes> ControllerService::set(const vm::Request& request) {
 
 // The code for it is made here, beside the running program; the boundary only exchanges it.
 base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
-  base::Result<NamedValues> values = named_values(controller_.image(), request);
+  base::Result<NamedValues> values = named_values(controller_.verified(), request);
   if (!values.ok()) return values.error();
   auto change = controller_.prepare_force(*values);
   if (!change.ok()) return change.error();
@@ -160,7 +156,7 @@ base::Result<base::Bytes> ControllerService::force(const vm::Request& request) {
 }
 
 base::Result<base::Bytes> ControllerService::unforce(const vm::Request& request) {
-  base::Result<std::vector<std::string>> names = paths_of(controller_.image(), request);
+  base::Result<std::vector<std::string>> names = paths_of(controller_.verified(), request);
   if (!names.ok()) return names.error();
   if (names->empty()) {
     for (const vm::Force& force : controller_.forces()) names->push_back(force.path);

@@ -1,7 +1,7 @@
 #include "tools/stvm/names.h"
 
 #include "base/joined.h"
-#include "ir/bytecode/symbols.h"
+#include "ir/bytecode/name_index.h"
 #include "ir/bytecode/variable_names.h"
 #include "tools/common/pattern.h"
 
@@ -12,13 +12,13 @@ namespace {
 struct Place {
   ControllerClient* client = nullptr;
   bool forces = false;
-  const ir::Image* image = nullptr;
+  const ir::NameIndex* names = nullptr;
 };
 
 base::Status add_matching(const Place& place, const std::string& pattern, Names& out) {
   const size_t before = out.size();
-  if (place.image != nullptr) {
-    ir::for_each_leaf(*place.image, [&](const std::string& path, const ir::Symbol&) {
+  if (place.names != nullptr) {
+    ir::for_each_leaf(place.names->image(), [&](const std::string& path, const ir::Symbol&) {
       if (tools::matches(pattern, path)) out.push_back(path);
     });
   } else if (place.forces) {
@@ -40,13 +40,13 @@ base::Status add_matching(const Place& place, const std::string& pattern, Names&
 
 base::Status add(const Place& place, const std::string& name, Names& out) {
   if (is_pattern(name)) return add_matching(place, name, out);
-  if (place.image == nullptr) {
+  if (place.names == nullptr) {
     out.push_back(name);
     return base::Ok{};
   }
-  base::Result<std::string> path = ir::path_of_name(*place.image, name);
-  if (!path.ok()) return path.error();
-  out.push_back(std::move(*path));
+  base::Result<ir::NamedSymbol> named = ir::named_symbol(*place.names, name);
+  if (!named.ok()) return named.error();
+  out.push_back(std::move(named->path));
   return base::Ok{};
 }
 
@@ -83,7 +83,8 @@ base::Result<Names> matching_forces(ControllerClient& client, const Names& names
 }
 
 base::Result<Names> matching(const ir::Image& image, const Names& names) {
-  return expanded({.image = &image}, names);
+  const ir::NameIndex index(image);
+  return expanded({.names = &index}, names);
 }
 
 base::Result<Assignments> matching(ControllerClient& client, const Assignments& rows) {
@@ -91,7 +92,8 @@ base::Result<Assignments> matching(ControllerClient& client, const Assignments& 
 }
 
 base::Result<Assignments> matching(const ir::Image& image, const Assignments& rows) {
-  return expanded({.image = &image}, rows);
+  const ir::NameIndex index(image);
+  return expanded({.names = &index}, rows);
 }
 
 }  // namespace stvm

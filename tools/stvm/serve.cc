@@ -316,7 +316,8 @@ base::Status serve(const tools::Options& options) {
   vm::Clock& clock = virtual_time ? static_cast<vm::Clock&>(virtual_clock) : real_clock;
   for (size_t i = 0; i < served->size(); ++i) {
     base::Status started =
-        (*served)[i]->start({options, *limits, virtual_time, exchange.get(), resources, i}, clock);
+        (*served)[i]->start({options, *limits, virtual_time, exchange.get(), resources, i}, clock,
+                            virtual_time ? nullptr : &real_clock);
     if (!started.ok()) {
       for (size_t k = 0; k < i; ++k) (*served)[k]->give_up();
       return started;

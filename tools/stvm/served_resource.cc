@@ -13,8 +13,11 @@ namespace {
 
 using online_change::Event;
 
-// Commands are answered between cycles too, at once, and what the keeper wants within such a time.
-constexpr int64_t kLookNs = 2'000'000;
+// So long before a cycle nothing else is begun: a command that comes then is answered after it.
+constexpr int64_t kQuietNs = 2'000'000;
+// Commands are answered between cycles too, at once. What the keeper wants and signals are looked
+// for in each cycle, and when so much time has gone.
+constexpr int64_t kLookNs = 100'000'000;
 constexpr int64_t kFaultLookNs = 10'000'000;
 constexpr const char* kWho = "serve";  // starts it, for the journal and the table of units
 
@@ -99,9 +102,10 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
   return out;
 }
 
-base::Status ServedResource::start(const ResourceController::Settings& settings, vm::Clock& clock) {
+base::Status ServedResource::start(const ResourceController::Settings& settings, vm::Clock& clock,
+                                   const vm::RealClock* real_clock) {
   clock_ = &clock;
-  virtual_time_ = settings.virtual_time;
+  real_clock_ = real_clock;
   ResourceController::Settings own = settings;
   own.limits.halted = !boot_->fault.empty();
   own.limits.events = &events_->ring();
@@ -136,14 +140,16 @@ base::Status ServedResource::make_real_time(const vm::RealTimeOptions& options) 
   return fit;
 }
 
-// Until the next cycle begins; what remains at the end is left to the clock's exact wait.
+// Until the next cycle begins, or shortly before: the rest is the clock's wait. One sleep for a
+// cycle, when nothing comes.
 void ServedResource::idle(const std::function<bool()>& stop, const std::function<void()>& alive) {
-  while (!stop()) {
+  while (!stop() && !service_->stop_wanted()) {
     alive();
     const int64_t now = clock_->now_ns();
     const int64_t next = controller().next_cycle_ns();
-    if (next - now <= kLookNs) return;
-    mailbox_.wait(std::min(now + kLookNs, next - kLookNs) - now);
+    if (next - now <= kQuietNs) return;
+    mailbox_.wait_until(*real_clock_, std::min(now + kLookNs, next));
+    if (next - clock_->now_ns() <= kQuietNs) return;
     mailbox_.serve();
     service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
   }
@@ -158,7 +164,7 @@ void ServedResource::run(const std::function<bool()>& stop, const std::function<
     service_->keeper().serve(controller().next_cycle_ns() - clock_->now_ns());
     if (controller().faulted()) {
       mailbox_.wait(kFaultLookNs);
-    } else if (!virtual_time_) {  // which only goes on when cycles do
+    } else if (real_clock_ != nullptr) {  // virtual time only goes on when cycles do
       idle(stop, alive);
     }
   }

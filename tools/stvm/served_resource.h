@@ -42,7 +42,9 @@ class ServedResource {
   const std::string& name() const { return name_; }  // "": there is no other
 
   // The controller with its first scan's state, its service and its socket.
-  base::Status start(const ResourceController::Settings& settings, vm::Clock& clock);
+  // `real_clock` is `clock`, or null in virtual time.
+  base::Status start(const ResourceController::Settings& settings, vm::Clock& clock,
+                     const vm::RealClock* real_clock);
   // Makes the calling thread real-time, after start(): it will be the control thread.
   base::Status make_real_time(const vm::RealTimeOptions& options);
   // Until `stop` says so, or somebody asks this resource to; `alive` in each cycle and while it
@@ -69,7 +71,7 @@ class ServedResource {
   std::unique_ptr<Trust> trust_;      // null: without keys
   std::optional<online_change::Boot> boot_;
   vm::Clock* clock_ = nullptr;
-  bool virtual_time_ = false;
+  const vm::RealClock* real_clock_ = nullptr;  // null: in virtual time
   std::unique_ptr<ResourceController> running_;
   vm::Mailbox mailbox_;
   std::unique_ptr<ControllerService> service_;

@@ -18,6 +18,8 @@ class RealClock : public Clock {
   void wait_until(int64_t deadline_ns) override;
   void consumed(uint64_t) override {}
   void worked(int64_t) override {}
+  // The same moment by CLOCK_MONOTONIC, which system calls wait for.
+  int64_t as_monotonic(int64_t at_ns) const { return origin_ns_ + at_ns; }
 
  private:
   int64_t origin_ns_ = 0;

@@ -173,7 +173,7 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_force(
     std::span<const NamedValue> values) const {
   std::vector<Force> next = forces();
   for (const NamedValue& row : values) {
-    base::Result<ir::Symbol> symbol = writable(image(), row.path);
+    base::Result<ir::Symbol> symbol = writable(verified(), row.path);
     if (!symbol.ok()) return symbol.error();
     base::Result<base::Bytes> bytes = parsed(image(), *symbol, row);
     if (!bytes.ok()) return bytes.error();
@@ -189,7 +189,7 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_unforce(
     std::span<const std::string> paths) const {
   std::vector<Force> next = forces();
   for (const std::string& path : paths) {
-    base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
+    base::Result<ir::Symbol> symbol = ir::find_symbol(verified().names(), path);
     if (!symbol.ok()) return symbol.error();
     const auto same_place = [&](const Force& f) { return ir::same_place(f.symbol, *symbol); };
     const bool twice = std::none_of(forces().begin(), forces().end(), same_place);

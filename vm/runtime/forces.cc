@@ -86,7 +86,7 @@ ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
   for (const Force& row : rows) {
     Force force = row;
     force.path = paths.find(row);
-    base::Result<ir::Symbol> symbol = ir::find_symbol(to, force.path);
+    base::Result<ir::Symbol> symbol = ir::find_symbol(image.names(), force.path);
     base::Bytes value;
     if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
     force = {force.path, symbol.ok() ? *symbol : ir::Symbol(), std::move(value)};

@@ -57,11 +57,21 @@ bool Mailbox::take_back() {
 void Mailbox::pause(int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
 
 // Whatever ends it early is looked at by the caller, as the end of the time is.
-void Mailbox::wait(int64_t ns) {
+void Mailbox::sleep_until(int64_t monotonic_ns) {
   const uint32_t seen = state_.load(std::memory_order_acquire);
-  if (seen == kPosted || ns <= 0) return;
-  const timespec time{ns / ir::kNsPerSecond, ns % ir::kNsPerSecond};
-  ::syscall(SYS_futex, &state_, FUTEX_WAIT_PRIVATE, seen, &time, nullptr, 0);
+  if (seen == kPosted) return;
+  const timespec until{monotonic_ns / ir::kNsPerSecond, monotonic_ns % ir::kNsPerSecond};
+  ::syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, seen, &until, nullptr,
+            FUTEX_BITSET_MATCH_ANY);
+}
+
+void Mailbox::wait_until(const RealClock& clock, int64_t at_ns) {
+  sleep_until(clock.as_monotonic(at_ns));
+}
+
+void Mailbox::wait(int64_t ns) {
+  RealClock clock;
+  if (ns > 0) wait_until(clock, clock.now_ns() + ns);
 }
 
 void Mailbox::serve() {

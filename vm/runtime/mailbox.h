@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "vm/runtime/boundary.h"
+#include "vm/runtime/clocks.h"
 
 namespace vm {
 
@@ -19,12 +20,15 @@ class Mailbox : public Boundary {
 
   // Control thread, at a boundary.
   void serve();
-  // Control thread, in its idle time: at most so long, until a job is there.
+  // Control thread, in its idle time: at most until then, or so long, until a job is there. One
+  // system call, whose end no work between a look at the clock and the call moves.
+  void wait_until(const RealClock& clock, int64_t at_ns);
   void wait(int64_t ns);
   // Control thread, when it ends: no job is taken any more.
   void close();
 
  private:
+  void sleep_until(int64_t monotonic_ns);
   bool post();       // false: closed
   bool take_back();  // false: it runs, or has run
   enum State : uint32_t { kEmpty, kPosted, kRunning, kDone, kClosed };

@@ -18,8 +18,8 @@ void WriteSet::Value::put(uint8_t* memory) const {
   put_value(memory + data, bytes.data(), bytes.size(), mask);
 }
 
-base::Result<ir::Symbol> writable(const ir::Image& image, std::string_view path) {
-  base::Result<ir::Symbol> symbol = ir::find_symbol(image, path);
+base::Result<ir::Symbol> writable(const ir::VerifiedImage& version, std::string_view path) {
+  base::Result<ir::Symbol> symbol = ir::find_symbol(version.names(), path);
   if (symbol.ok() && symbol->constant) return read_only(path, "a constant");
   return symbol;
 }
@@ -42,7 +42,7 @@ base::Result<WriteSet> WriteSet::make(const TaskTables& tables,
   base::Bytes outputs(tables.outputs.size());
   std::vector<ir::DataRange> ranges;
   for (const NamedValue& row : values) {
-    base::Result<ir::Symbol> symbol = writable(image, row.path);
+    base::Result<ir::Symbol> symbol = writable(tables.version, row.path);
     if (!symbol.ok()) return symbol.error();
     if (symbol->input) return read_only(row.path, "an input; force it instead");
     base::Result<base::Bytes> bytes = parsed(image, *symbol, row);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "ir/bytecode/verify.h"
 #include "vm/runtime/forces.h"
 
 namespace vm {
@@ -34,7 +35,7 @@ struct WriteSet {
 };
 
 // What `set` and `force` write to; kReadOnly.
-base::Result<ir::Symbol> writable(const ir::Image& image, std::string_view path);
+base::Result<ir::Symbol> writable(const ir::VerifiedImage& version, std::string_view path);
 base::Result<base::Bytes> parsed(const ir::Image& image, const ir::Symbol& symbol,
                                  const NamedValue& row);
 
