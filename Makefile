@@ -144,6 +144,7 @@ SEED := 1
 PROGRAMS := 5000
 differential: build
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink --jobs $(JOBS)
+	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --dialect iec --shrink --jobs $(JOBS)
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink --jobs $(JOBS)
 	@python3 tests/fates/main.py $(BUILD)/tests/fates $(SEED) $(PROGRAMS) --jobs $(JOBS)
 

@@ -60,6 +60,7 @@ class Drawing {
     std::string text;
     Node node;
     bool label;
+    bool title;
     size_t before;  // the element of all_ that follows it in the document
   };
   static constexpr uint32_t kNone = 0xffffffffu;

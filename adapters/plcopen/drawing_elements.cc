@@ -304,6 +304,21 @@ void Drawing::add_connector(Node node, Kind kind) {
   }
 }
 
+namespace {
+
+// Titles and comments of networks, as CODESYS keeps them.
+bool is_vendor_remark(Node node, const char* kind) {
+  for (Node data : xml::children(xml::child(node, "addData"), "data")) {
+    if (!is_vendor(data, "fbdelementtype")) continue;
+    if (base::same_name(xml::trimmed(xml::text_of(data)), kind)) return true;
+  }
+  return false;
+}
+
+bool is_title(Node node) { return is_vendor_remark(node, "networktitle"); }
+
+}  // namespace
+
 void Drawing::add_remark(Node node, Kind) {
   const int32_t y = whole(xml::child(node, "position").attribute("y").as_double());
   const bool label = xml::is(node, "label");
@@ -314,24 +329,10 @@ void Drawing::add_remark(Node node, Kind) {
   } else {
     text = remark_of(xml::child(node, xml::is(node, "comment") ? "content" : "alternativeText"));
   }
-  if (!text.empty()) remarks_.push_back({y, std::move(text), node, label, all_.elements.size()});
+  const bool title = xml::is(node, "vendorElement") && is_title(node);
+  if (text.empty()) return;
+  remarks_.push_back({y, std::move(text), node, label, title, all_.elements.size()});
 }
-
-namespace {
-
-// Titles and comments of networks, as CODESYS keeps them.
-bool is_title(Node node) {
-  for (Node data : xml::children(xml::child(node, "addData"), "data")) {
-    if (!is_vendor(data, "fbdelementtype")) continue;
-    const std::string type = base::fold_name(xml::trimmed(xml::text_of(data)));
-    if (type == base::fold_name("networktitle") || type == base::fold_name("networkcomment")) {
-      return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
 
 bool Drawing::add(Node node) {
   struct Form {
@@ -356,7 +357,8 @@ bool Drawing::add(Node node) {
                                     {"vendorElement", &Drawing::add_remark, Kind::kSource}};
   for (const Form& form : kForms) {
     if (!xml::is(node, form.name)) continue;
-    if (form.name == std::string_view("vendorElement") && !is_title(node)) return false;
+    const bool remark = is_title(node) || is_vendor_remark(node, "networkcomment");
+    if (form.name == std::string_view("vendorElement") && !remark) return false;
     (this->*form.add)(node, form.kind);
     return true;
   }

@@ -4,6 +4,7 @@
 #include "adapters/plcopen/drawing.h"
 #include "base/limits.h"
 #include "base/name_case.h"
+#include "frontend/network/head.h"
 
 namespace plcopen {
 
@@ -247,7 +248,10 @@ void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Bo
       continue;
     }
     network::Network& own = body.networks[network::place_between(ends, remark.y)];
-    if (!remark.label) {
+    if (remark.title && own.title.empty()) {
+      own.title = network::title_of(remark.text);
+      own.headed = !own.title.empty();
+    } else if (!remark.label) {
       own.comments.push_back(std::move(remark.text));
     } else if (own.label.empty()) {
       own.label.text = std::move(remark.text);
@@ -321,6 +325,7 @@ void Drawing::drop_idle(network::Body& body) {
     if (!does_something(part)) {
       part.elements.clear();
       if (part.label.empty()) {
+        if (!part.title.empty()) part.comments.insert(part.comments.begin(), part.title);
         comments = std::move(part.comments);
         continue;
       }
@@ -330,6 +335,12 @@ void Drawing::drop_idle(network::Body& body) {
   if (!comments.empty()) {
     kept.emplace_back();
     kept.back().comments = std::move(comments);
+  }
+  // In text a title ends the network above, and so does whatever follows below it.
+  bool below = false;
+  for (network::Network& part : kept) {
+    part.headed = part.headed || (below && part.label.empty());
+    below = part.headed;
   }
   body.networks = std::move(kept);
 }

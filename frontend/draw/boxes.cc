@@ -1,7 +1,8 @@
 // Boxes and wires: every element stands in the layer behind those that it is linked to; between
 // two layers is a channel in which wires change their height, each on a track of its own. A link
 // over several layers has a lane in each of those between. Links to what is executed later are
-// written, not drawn.
+// written, not drawn. A bridge of ladder is drawn so, too: it hangs on the left rail, and its coils
+// stand in the last layer, at the right rail.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,6 +23,8 @@ constexpr double kNodeGap = 14;
 constexpr double kTrack = 10;
 constexpr double kChannelEnd = 12;  // wire between a track and a frame
 constexpr double kNudge = 6;
+constexpr double kRailGap = 16;
+constexpr double kTurn = 19;  // from the first pin of a box up to its number
 
 using Net = std::pair<uint32_t, uint32_t>;  // element and output
 
@@ -43,6 +46,9 @@ struct Node {
   double right = 0;  // the same, other side
   std::optional<Box> box;
   std::optional<Symbol> symbol;
+  bool powered = false;                          // a wire leads from the left rail to it
+  uint32_t turn = 0;                             // in the order of execution; 0: not shown
+  std::string note;                              // of a sink: address and comment
   std::string text;                              // of sources and sinks
   std::string operand;                           // in front of its only input
   std::vector<std::pair<Net, uint32_t>> inputs;  // nets and rows where they arrive
@@ -50,14 +56,20 @@ struct Node {
 
 class BoxPicture {
  public:
-  BoxPicture(Svg& svg, const network::Network& network, const Live* live)
-      : svg_(svg), network_(network), live_(live), sinks_(network), power_(network, live) {}
+  BoxPicture(Svg& svg, const network::Network& network, const Look& look, double rails)
+      : svg_(svg),
+        network_(network),
+        look_(look),
+        live_(look.live),
+        rails_(rails),
+        sinks_(network),
+        power_(network, look.live) {}
 
   double run(double top) {
     find_nodes();
     find_layers();
     add_lanes();
-    double x = kLeft;
+    double x = is_ladder() ? kLeft + kRailGap : kLeft;
     double height = 0;
     for (uint32_t layer = 0; layer < layers_.size(); ++layer) {
       double bottom = place(layer, top);
@@ -68,10 +80,16 @@ class BoxPicture {
       for (uint32_t n : layers_[layer]) note_sources(nodes_[n], x);
       x += widths_[layer];
     }
+    if (is_ladder()) rails(top, top + height, std::max(x + kRailGap, kLeft + rails_));
     return height;
   }
 
  private:
+  struct RailWire {  // from an element to the right rail
+    double x = 0;
+    double y = 0;
+    Ink ink = Ink::kPlain;
+  };
   struct End {  // where a net leaves a layer
     double x = 0;
     double y = 0;
@@ -91,11 +109,19 @@ class BoxPicture {
   double channel(uint32_t layer, double x);
   void draw(const Node& node, double x);
   void note_sources(const Node& node, double x);
+  bool is_ladder() const { return rails_ > 0; }
+  bool is_end(uint32_t element) const;
+  void rails(double top, double bottom, double right);
+  Ink power_ink() const { return live_ != nullptr ? Ink::kOn : Ink::kPlain; }
   Ink net_ink(Net net) const { return ink(power_.output({net.first, net.second})); }
 
   Svg& svg_;
   const network::Network& network_;
+  const Look& look_;
   const Live* live_;
+  double rails_;  // 0: there are none
+  uint32_t turns_ = 0;
+  std::vector<RailWire> to_rail_;
   network::Sinks sinks_;
   Power power_;
   std::vector<bool> sources_;                 // sources and rails that have a node of their own
@@ -113,6 +139,20 @@ bool BoxPicture::is_written(uint32_t element, Link link) const {
   Kind kind = network_.elements[link.element].kind;
   bool plain = kind == Kind::kSource || kind == Kind::kLeftRail;
   return link.element >= element || (plain && !sources_[link.element]);
+}
+
+// Nothing follows it in the rung.
+bool BoxPicture::is_end(uint32_t element) const {
+  for (const uint32_t users : users_[element]) {
+    if (users > 0) return false;
+  }
+  return network::is_placed(network_.elements[element].kind);
+}
+
+void BoxPicture::rails(double top, double bottom, double right) {
+  svg_.rail(kLeft, top, bottom);
+  svg_.rail(right, top, bottom);
+  for (const RailWire& wire : to_rail_) svg_.line(wire.x, wire.y, right, wire.y, wire.ink);
 }
 
 // Sources at an input where others arrive, too.
@@ -171,7 +211,7 @@ void BoxPicture::add_node(uint32_t i) {
       attached.push_back(is_attached(i, pin));
     }
     node.box = make_box(network_, sinks_, i, attached,
-                        {network::kNoPin, network::kNoPin, live_, &power_, false});
+                        {network::kNoPin, network::kNoPin, &look_, &power_, false});
     for (uint32_t row = 0; row < node.box->inputs.size(); ++row) {
       connect(node, element.inputs[node.box->inputs[row].pin], row);
     }
@@ -185,7 +225,10 @@ void BoxPicture::add_node(uint32_t i) {
     if (!plain) {
       connect(node, element.inputs[0], 0);
       const auto& from = element.inputs[0].from;
-      if (from.size() == 1 && node.inputs.empty()) {
+      const bool rail =
+          from.size() == 1 && network_.elements[from[0].element].kind == Kind::kLeftRail;
+      node.powered = is_ladder() && rail && node.inputs.empty();
+      if (from.size() == 1 && node.inputs.empty() && !node.powered) {
         node.operand =
             network::pin_value(element.inputs[0].modifier, written_operand(network_, from[0]));
       }
@@ -197,14 +240,17 @@ void BoxPicture::add_node(uint32_t i) {
       node.up = 9;
       node.down = 9;
       node.right = node.left + text_width(node.text) + (element.kind == Kind::kSink ? 24 : 4);
+      if (element.kind == Kind::kSink) node.note = short_note(look_, element.operand.text);
     } else {
-      node.symbol = make_symbol(element, live_);
+      node.symbol = make_symbol(element, look_);
       node.up = node.symbol->up;
       node.down = node.symbol->down;
       node.right = node.left + node.symbol->width;
     }
     node.width = node.right;
   }
+  const bool acts = element.kind != Kind::kSource && element.kind != Kind::kLeftRail;
+  if (!is_ladder() && acts) node.turn = ++turns_;
   number_[i] = static_cast<uint32_t>(nodes_.size());
   nodes_.push_back(std::move(node));
 }
@@ -215,6 +261,9 @@ void BoxPicture::find_layers() {
       node.layer = std::max(node.layer, nodes_[number_[net.first]].layer + 1);
     }
     if (layers_.size() <= node.layer) layers_.resize(node.layer + 1);
+  }
+  for (Node& node : nodes_) {
+    if (is_ladder() && is_end(node.element)) node.layer = static_cast<uint32_t>(layers_.size()) - 1;
   }
   for (uint32_t n = 0; n < nodes_.size(); ++n) layers_[nodes_[n].layer].push_back(n);
 }
@@ -261,7 +310,11 @@ bool BoxPicture::touches_other(const Node& node) const {
   for (const auto& [net, row] : node.inputs) {
     double y = node.y + row * kPinRow;
     for (const auto& [other, end] : ends_) {
-      if (other != net && std::abs(end.y - y) < kNudge - 1) return true;
+      if (std::abs(end.y - y) >= kNudge - 1) continue;
+      const bool meets = std::any_of(node.inputs.begin(), node.inputs.end(), [&](const auto& in) {
+        return in.first == other && in.second == row;
+      });
+      if (!meets) return true;
     }
   }
   return false;
@@ -296,6 +349,7 @@ double BoxPicture::channel(uint32_t layer, double x) {
     uint32_t track = 0;
   };
   std::map<Net, Way> ways;
+  std::map<double, std::vector<Net>> arrivals;  // by height
   for (uint32_t n : layers_[layer + 1]) {
     const Node& node = nodes_[n];
     for (const auto& [net, row] : node.inputs) {
@@ -305,6 +359,7 @@ double BoxPicture::channel(uint32_t layer, double x) {
       way.net = net;
       way.from = end->second;
       way.to.push_back(node.y + row * kPinRow);
+      arrivals[way.to.back()].push_back(net);
     }
   }
   std::vector<Way*> bent;
@@ -339,6 +394,19 @@ double BoxPicture::channel(uint32_t layer, double x) {
     bool inside = way.from.y > way.low && way.from.y < way.high;
     if (way.low < way.high && (through || inside)) svg_.dot(at, way.from.y, colour);
   }
+  // Where several nets arrive, they meet: the last one at the track that is next to the pin.
+  for (const auto& [y, nets] : arrivals) {
+    if (nets.size() < 2) continue;
+    double at = 0;
+    Truth power = Truth::kFalse;
+    for (const Net& net : nets) {
+      const Way& way = ways[net];
+      if (way.low < way.high) at = std::max(at, begin + way.track * kTrack);
+      power = any(power, power_.output({net.first, net.second}));
+    }
+    if (at > 0) svg_.dot(at, y, ink(power));
+    if (at > 0 && live_ != nullptr) svg_.line(at, y, end, y, ink(power));
+  }
   return end;
 }
 
@@ -349,13 +417,24 @@ void BoxPicture::draw(const Node& node, double x) {
     if (to > x) svg_.line(x, y, to, y, net_ink(net));
   }
   if (node.lane) return;
-  if (node.box) return draw_box(svg_, *node.box, x, node.y);
+  if (node.powered) svg_.line(kLeft, node.y, x, node.y, power_ink());
+  if (node.box) {
+    if (node.turn != 0) {
+      svg_.text(x + node.right + 4, node.y - kTurn, std::to_string(node.turn), Type::kNote);
+    }
+    return draw_box(svg_, *node.box, x, node.y);
+  }
   double left = x + node.left;
   if (!node.operand.empty()) svg_.text(x, node.y + 4, node.operand);
   const Element& element = network_.elements[node.element];
   if (node.symbol) {
     Ink in = element.inputs.empty() ? Ink::kPlain : ink(power_.input(element.inputs[0]));
     Ink out = element.outputs.empty() ? in : net_ink({node.element, 0});
+    if (node.turn != 0) {
+      svg_.text(x + node.width + 2, node.y - 4, std::to_string(node.turn), Type::kNote);
+    }
+    const bool passes_on = is_ladder() && is_end(node.element) && !element.outputs.empty();
+    if (passes_on) to_rail_.push_back({left + node.symbol->width, node.y, out});
     return draw_symbol(svg_, *node.symbol, left, node.symbol->width, node.y, in, out);
   }
   if (element.kind == Kind::kSink) {
@@ -367,10 +446,14 @@ void BoxPicture::draw(const Node& node, double x) {
     if (ring) svg_.ring(left + 4, node.y, 4);
     svg_.arrow_right(left + 20, node.y, in);
     svg_.text(left + 24, node.y + 4, node.text);
-    if (live_ != nullptr) {
-      svg_.text(left + 32 + text_width(node.text), node.y + 4, live_->shown(element.operand.text),
-                Type::kValue);
-    }
+    double behind = left + 32 + text_width(node.text);
+    auto beside = [&](const std::string& text, Type type) {
+      svg_.text(behind, node.y + 4, text, type);
+      if (!text.empty()) behind += text_width(text, type) + 8;
+    };
+    beside(live_ != nullptr ? live_->shown(element.operand.text) : "", Type::kValue);
+    beside(node.note, Type::kNote);
+    if (node.turn != 0) beside(std::to_string(node.turn), Type::kNote);
     return;
   }
   svg_.text(left, node.y + 4, node.text);
@@ -393,8 +476,9 @@ void BoxPicture::note_sources(const Node& node, double x) {
 
 }  // namespace
 
-double draw_boxes(Svg& svg, const network::Network& network, double y, const Live* live) {
-  return BoxPicture(svg, network, live).run(y);
+double draw_boxes(Svg& svg, const network::Network& network, double y, const Look& look,
+                  double rails) {
+  return BoxPicture(svg, network, look, rails).run(y);
 }
 
 }  // namespace frontend::draw

@@ -36,6 +36,13 @@ double heading(Svg& svg, const network::Network& network, size_t number, double 
     x += text_width(network.label.text) + 20;
   }
   double at = y;
+  if (!network.title.empty() || network.disabled) {
+    svg.text(x, y + 12, network.title, Type::kBold);
+    if (!network.title.empty()) x += text_width(network.title) + 14;
+    if (network.disabled) svg.text(x, y + 12, "disabled", Type::kNote);
+    at += kLineHeight;
+    x = kLeft + text_width(head) + 12;
+  }
   auto comment = [&](const std::string& text) {
     for (const std::string& paragraph : lines_of(text)) {
       for (const std::string& line : base::wrapped(paragraph, kCommentColumns)) {
@@ -49,6 +56,12 @@ double heading(Svg& svg, const network::Network& network, size_t number, double 
     if (!element.comment.empty()) comment(element.comment);
   }
   return std::max(at, y + kLineHeight) + 4;
+}
+
+// Nothing flows through what is disabled.
+Look look_at(const network::Network& network, Look look) {
+  if (network.disabled) look.live = nullptr;
+  return look;
 }
 
 }  // namespace
@@ -69,18 +82,19 @@ std::vector<std::string> variables(const network::Body& body) {
   return out;
 }
 
-std::string draw_body(const network::Body& body, std::string_view title, const Live* live) {
+std::string draw_body(const network::Body& body, std::string_view title, const Look& look) {
   Svg svg;
   svg.text(kLeft, 28, title, Type::kTitle);
+  const bool ladder = body.language == network::Language::kLadder;
   std::vector<std::optional<Rung>> rungs;
   double width = kMinWidth;
   double coil = 0;  // room for the last one of each rung: they stand below each other
   for (const network::Network& network : body.networks) {
     std::optional<network::Placement> placement;
-    if (body.language == network::Language::kLadder) placement = network::place(network);
+    if (ladder) placement = network::place(network);
     rungs.emplace_back();
     if (!placement) continue;
-    rungs.back().emplace(network, std::move(*placement), live);
+    rungs.back().emplace(network, std::move(*placement), look_at(network, look));
     if (rungs.back()->coil() <= kMaxCoil) coil = std::max(coil, rungs.back()->coil());
   }
   for (std::optional<Rung>& rung : rungs) {
@@ -97,12 +111,14 @@ std::string draw_body(const network::Body& body, std::string_view title, const L
       empty = empty && !network::is_placed(element.kind) && element.kind != network::Kind::kSink;
     }
     if (empty) continue;
+    if (network.disabled) svg.begin_disabled();
     if (rungs[n]) {
       rungs[n]->draw(svg, y, width);
       y += rungs[n]->height() + 22;
     } else {
-      y += draw_boxes(svg, network, y, live) + 22;
+      y += draw_boxes(svg, network, y, look_at(network, look), ladder ? width : 0) + 22;
     }
+    if (network.disabled) svg.end_disabled();
   }
   return svg.finish(title);
 }

@@ -5,14 +5,22 @@
 #include <string>
 
 #include "frontend/draw/live.h"
+#include "frontend/draw/notes.h"
 #include "frontend/draw/svg.h"
 #include "frontend/parse/tree.h"
 
 namespace frontend::draw {
 
-// Networks below each other, each under its number, label and comments. A network of ladder that
-// has no rungs of series and parallel branches is drawn as boxes and wires. `live` may be null.
-std::string draw_body(const network::Body& body, std::string_view title, const Live* live);
+struct Look {
+  const Live* live = nullptr;    // values of a running program; null: none are shown
+  const Notes* notes = nullptr;  // addresses and comments of operands; null: none are shown
+  double width = 0;              // a longer rung goes on below; 0: it never does
+};
+
+// Networks below each other, each under its number, title, label and comments; disabled ones are
+// pale. Bridges of ladder, which are no series and parallel branches, have rails and wires that
+// meet at dots. Boxes and variables of FBD have the number of their turn in the network.
+std::string draw_body(const network::Body& body, std::string_view title, const Look& look);
 
 // `sources` holds the texts of the conditions.
 std::string draw_chart(const Tree& tree, const base::SourceMap& sources, const Chart& chart,

@@ -17,6 +17,8 @@ namespace {
 constexpr double kGap = 14;       // wire between columns
 constexpr double kJointGap = 28;  // the same with a joint in the middle
 constexpr double kRowGap = 6;
+constexpr double kArrow = 46;  // room where a wire goes on in another strip
+constexpr double kStripGap = 12;
 
 // Where power goes on, or would if something followed the box.
 uint32_t power_output(const network::Element& block, const Cell& cell) {
@@ -31,9 +33,37 @@ uint32_t power_output(const network::Element& block, const Cell& cell) {
 
 }  // namespace
 
-Rung::Rung(const network::Network& network, network::Placement placement, const Live* live)
-    : network_(network), placement_(std::move(placement)), live_(live), power_(network, live) {
+Rung::Rung(const network::Network& network, network::Placement placement, const Look& look)
+    : network_(network),
+      placement_(std::move(placement)),
+      look_(look),
+      power_(network, look.live) {
   measure();
+  cut();
+  stack();
+}
+
+Rung::Shape Rung::measure(const Cell& cell, const network::Sinks& sinks) {
+  const network::Element& element = network_.elements[cell.element];
+  Shape shape;
+  if (element.kind == Kind::kBlock) {
+    shape.box = true;
+    shape.number = static_cast<uint32_t>(boxes_.size());
+    std::vector<bool> attached(element.outputs.size(), true);
+    BoxStyle style{cell.input, power_output(element, cell), &look_, &power_};
+    boxes_.push_back(make_box(network_, sinks, cell.element, attached, style));
+    const Box& box = boxes_.back();
+    shape.width = box.before + box.width + box.behind;
+    shape.up = box.up;
+    shape.down = box.down;
+  } else {
+    shape.number = static_cast<uint32_t>(symbols_.size());
+    symbols_.push_back(make_symbol(element, look_));
+    shape.width = symbols_.back().width;
+    shape.up = symbols_.back().up;
+    shape.down = symbols_.back().down;
+  }
+  return shape;
 }
 
 void Rung::measure() {
@@ -41,35 +71,10 @@ void Rung::measure() {
   network::Sinks sinks(network_);
   columns_.assign(p.columns, 0);
   right_columns_.assign(p.right_columns, 0);
-  std::vector<double> up(p.rows, 10);
-  std::vector<double> down(p.rows, 10);
   for (const Cell& cell : p.cells) {
-    const network::Element& element = network_.elements[cell.element];
-    Shape shape;
-    double above;
-    double below;
-    if (element.kind == Kind::kBlock) {
-      shape.box = true;
-      shape.number = static_cast<uint32_t>(boxes_.size());
-      std::vector<bool> attached(element.outputs.size(), true);
-      BoxStyle style{cell.input, power_output(element, cell), live_, &power_};
-      boxes_.push_back(make_box(network_, sinks, cell.element, attached, style));
-      const Box& box = boxes_.back();
-      shape.width = box.before + box.width + box.behind;
-      above = box.up;
-      below = box.down;
-    } else {
-      shape.number = static_cast<uint32_t>(symbols_.size());
-      symbols_.push_back(make_symbol(element, live_));
-      shape.width = symbols_.back().width;
-      above = symbols_.back().up;
-      below = symbols_.back().down;
-    }
+    shapes_.push_back(measure(cell, sinks));
     double& column = cell.at_right ? right_columns_[cell.column] : columns_[cell.column];
-    column = std::max(column, shape.width);
-    up[cell.row] = std::max(up[cell.row], above);
-    down[cell.row] = std::max(down[cell.row], below);
-    shapes_.push_back(shape);
+    column = std::max(column, shapes_.back().width);
   }
   std::vector<bool> joint(p.columns + 1);
   for (const Joint& one : p.joints) joint[one.boundary] = true;
@@ -79,20 +84,91 @@ void Rung::measure() {
     boundaries_.push_back(x + gap / 2);
     x += gap + (b < p.columns ? columns_[b] : 0);
   }
-  for (double width : right_columns_) x += width + kGap;
   width_ = x;
+  for (double width : right_columns_) width_ += width + kGap;
+}
+
+// Into strips of whole columns, each as wide as may be; what stands at the right rail is the last
+// of them.
+void Rung::cut() {
+  const uint32_t columns = placement_.columns;
+  const bool whole = look_.width <= 0 || width_ <= look_.width;
+  double right = 0;
+  for (double width : right_columns_) right += width + kGap;
+  Strip strip;
+  for (uint32_t c = 0; c < columns && !whole; ++c) {
+    const double from = strip.first == 0 ? 0 : boundaries_[strip.first] - kArrow;
+    const double end = boundaries_[c + 1] + kArrow - from;
+    if (c == strip.first || end <= look_.width) continue;
+    strip.last = c;
+    strips_.push_back(strip);
+    strip.first = c;
+  }
+  const double from = strip.first == 0 ? 0 : boundaries_[strip.first] - kArrow;
+  const double end = boundaries_[columns] + kJointGap / 2 + right - from;
+  if (!whole && end > look_.width && strip.first < columns) {
+    strip.last = columns;
+    strips_.push_back(strip);
+    strip.first = columns;
+  }
+  strip.last = columns;
+  strips_.push_back(strip);
+  width_ = 0;
+  for (Strip& each : strips_) {
+    each.left = each.first == 0 ? 0 : boundaries_[each.first] - kArrow;
+    const bool last = &each == &strips_.back();
+    const double gap = last ? kJointGap / 2 + right : kArrow;
+    width_ = std::max(width_, boundaries_[each.last] - each.left + gap);
+  }
+}
+
+bool Rung::shows(const Strip& strip, const Cell& cell) const {
+  if (cell.at_right) return &strip == &strips_.back();
+  return strip.first <= cell.column && cell.column < strip.last;
+}
+
+// Rows of each strip, and the strips below each other.
+void Rung::stack() {
+  const network::Placement& p = placement_;
   double y = 0;
-  for (uint32_t r = 0; r < p.rows; ++r) {
-    wires_.push_back(y + up[r]);
-    y += up[r] + down[r] + kRowGap;
+  for (Strip& strip : strips_) {
+    const bool last = &strip == &strips_.back();
+    std::vector<double> up(p.rows, 10);
+    std::vector<double> down(p.rows, 10);
+    std::vector<bool> used(p.rows, strips_.size() == 1);
+    for (size_t c = 0; c < p.cells.size(); ++c) {
+      const uint32_t row = p.cells[c].row;
+      if (!shows(strip, p.cells[c])) continue;
+      used[row] = true;
+      up[row] = std::max(up[row], shapes_[c].up);
+      down[row] = std::max(down[row], shapes_[c].down);
+    }
+    for (const Wire& wire : p.wires) {
+      const bool goes_on = !last && wire.from <= strip.last && (wire.to > strip.last || wire.to_rail);
+      if (goes_on) strip.going_on.push_back(wire.row);
+      const bool begun = wire.from < strip.last || (last && wire.from <= strip.last) || goes_on;
+      const bool here = begun && (wire.to > strip.first || wire.to_rail);
+      used[wire.row] = used[wire.row] || here;
+    }
+    strip.top = y;
+    strip.wires.assign(p.rows, y);
+    for (uint32_t r = 0; r < p.rows; ++r) {
+      strip.wires[r] = y + (used[r] ? up[r] : 0);
+      if (used[r]) y += up[r] + down[r] + kRowGap;
+    }
+    strip.bottom = y;
+    if (!last) y += kStripGap;
   }
   height_ = y;
 }
 
 void Rung::widen_coil(double room) {
   if (right_columns_.empty() || right_columns_[0] >= room) return;
-  width_ += room - right_columns_[0];
+  const Strip& last = strips_.back();
   right_columns_[0] = room;
+  double end = boundaries_[last.last] - last.left + kJointGap / 2;
+  for (double width : right_columns_) end += width + kGap;
+  width_ = std::max(width_, end);
 }
 
 // Draws one rung from left to right, boundary by boundary: `now_` is the power on each row's wire.
@@ -112,29 +188,65 @@ class Rung::Pen {
   }
 
   void run() {
-    svg_.rail(kLeft, y_, y_ + rung_.height_);
-    svg_.rail(kLeft + width_, y_, y_ + rung_.height_);
+    for (const Strip& strip : rung_.strips_) {
+      const bool first = &strip == &rung_.strips_.front();
+      strip_ = &strip;
+      first ? begin() : resume();
+      if (first) joints(0);
+      for (uint32_t b = strip.first; b < strip.last; ++b) {
+        column(b);
+        joints(b + 1);
+      }
+      &strip == &rung_.strips_.back() ? finish() : pause();
+    }
+  }
+
+ private:
+  double boundary(uint32_t b) const { return kLeft + rung_.boundaries_[b] - strip_->left; }
+  double row_y(uint32_t row) const { return y_ + strip_->wires[row]; }
+  void rail(double x) const { svg_.rail(x, y_ + strip_->top, y_ + strip_->bottom); }
+  void line(uint32_t row, double from, double to) {
+    svg_.line(from, row_y(row), to, row_y(row), ink(now_[row]));
+  }
+
+  void begin() {
+    rail(kLeft);
     for (const Wire& wire : p_.wires) {
       if (!wire.from_rail) continue;
-      now_[wire.row] = rung_.live_ != nullptr ? Truth::kTrue : Truth::kUnknown;
+      now_[wire.row] = rung_.look_.live != nullptr ? Truth::kTrue : Truth::kUnknown;
       line(wire.row, kLeft, boundary(0));
     }
-    for (uint32_t b = 0; b <= p_.columns; ++b) {
-      for (const Joint& joint : p_.joints) {
-        if (joint.boundary == b) this->joint(joint);
-      }
-      if (b < p_.columns) column(b);
-    }
+  }
+  void finish() {
+    rail(kLeft + width_);
     for (const Wire& wire : p_.wires) {
       if (wire.to_rail) end(wire.row);
     }
   }
 
- private:
-  double boundary(uint32_t b) const { return kLeft + rung_.boundaries_[b]; }
-  double row_y(uint32_t row) const { return y_ + rung_.wires_[row]; }
-  void line(uint32_t row, double from, double to) {
-    svg_.line(from, row_y(row), to, row_y(row), ink(now_[row]));
+  // Where wires go on in the next strip, and where they come from.
+  void pause() {
+    for (uint32_t row : strip_->going_on) {
+      const double x = boundary(strip_->last);
+      line(row, x, x + 16);
+      svg_.arrow_right(x + 22, row_y(row), ink(now_[row]));
+      svg_.text(x + 26, row_y(row) + 4, std::to_string(++paused_), Type::kNote);
+    }
+  }
+  void resume() {
+    const Strip& before = *(strip_ - 1);
+    for (uint32_t row : before.going_on) {
+      const double x = boundary(strip_->first);
+      svg_.text(x - 30, row_y(row) + 4, std::to_string(++resumed_), Type::kNote, Anchor::kEnd);
+      svg_.arrow_right(x - 18, row_y(row), ink(now_[row]));
+      line(row, x - 20, x);
+    }
+  }
+
+  void joints(uint32_t b) {
+    for (const Joint& joint : p_.joints) {
+      if (joint.boundary == b) this->joint(joint);
+    }
   }
   const Wire* wire_at(uint32_t row, uint32_t b) const {
     for (const Wire* wire : wires_[row]) {
@@ -234,6 +346,9 @@ class Rung::Pen {
   Svg& svg_;
   double y_;
   double width_;
+  const Strip* strip_ = nullptr;
+  uint32_t paused_ = 0;
+  uint32_t resumed_ = 0;
   std::vector<Truth> now_;
   std::vector<std::vector<const Wire*>> wires_;  // by row
   std::vector<std::vector<size_t>> left_;        // cells, by column

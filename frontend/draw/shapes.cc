@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/wrapped.h"
+
 namespace frontend::draw {
 
 using network::Element;
@@ -14,11 +16,23 @@ constexpr double kStub = 14;  // wire between an operand and its pin
 constexpr double kHead = 20;  // the type's row
 constexpr double kNameRow = 16;
 constexpr double kSymbol = 12;  // half the width of a contact
+constexpr double kNoteRow = 13;
+constexpr size_t kNoteColumns = 18;  // of a comment above a symbol
+constexpr size_t kNoteLines = 2;
+constexpr size_t kPinNoteColumns = 24;  // of one beside a pin
 
 std::string pin_name(std::string_view name, Modifier modifier) {
   if (modifier == Modifier::kRising) return "\xE2\x86\x91" + std::string(name);
   if (modifier == Modifier::kFalling) return "\xE2\x86\x93" + std::string(name);
   return std::string(name);
+}
+
+// Cut between characters.
+std::string shortened(const std::string& text, size_t bytes) {
+  if (text.size() <= bytes) return text;
+  size_t end = bytes;
+  while (end > 0 && (static_cast<uint8_t>(text[end]) & 0xC0) == 0x80) --end;
+  return text.substr(0, end) + "...";
 }
 
 const char* letter(Modifier modifier) {
@@ -34,6 +48,20 @@ const char* letter(Modifier modifier) {
     default:
       return "";
   }
+}
+
+// A comment as lines above a symbol, the address below them.
+std::vector<std::string> note_lines(const Look& look, std::string_view operand) {
+  const Note* note = look.notes == nullptr ? nullptr : look.notes->find(operand);
+  if (note == nullptr) return {};
+  std::vector<std::string> out = base::wrapped(note->comment, kNoteColumns);
+  if (out.size() > kNoteLines) {
+    out.resize(kNoteLines);
+    out.back() += " ...";
+  }
+  for (std::string& line : out) line = shortened(line, kNoteColumns + 6);
+  if (!note->address.empty()) out.push_back(note->address);
+  return out;
 }
 
 BoxPin input_pin(const network::Network& network, uint32_t element, uint32_t pin,
@@ -54,7 +82,8 @@ BoxPin input_pin(const network::Network& network, uint32_t element, uint32_t pin
   bool written = !style.rails && (below || from.kind == Kind::kLeftRail);
   if (from.kind != Kind::kSource && !written) return out;
   out.operand = written_operand(network, input.from[0]);
-  if (style.live != nullptr) out.value = style.live->shown(out.operand);
+  out.note = short_note(*style.look, out.operand);
+  if (style.look->live != nullptr) out.value = style.look->live->shown(out.operand);
   return out;
 }
 
@@ -75,8 +104,10 @@ BoxPin output_pin(const network::Network& network, const network::Sinks& sinks, 
     if (sink.inputs[0].modifier == Modifier::kNegated) out.operand += "NOT ";
     out.operand += sink_text(sink);
     shown = sink.operand.text;
+    const std::string note = short_note(*style.look, shown);
+    if (!note.empty()) out.note += (out.note.empty() ? "" : ", ") + note;
   }
-  if (style.live != nullptr) out.value = style.live->shown(shown);
+  if (style.look->live != nullptr) out.value = style.look->live->shown(shown);
   return out;
 }
 
@@ -84,6 +115,7 @@ double beside(const BoxPin& pin) {
   double width = pin.operand.empty() ? 0 : text_width(pin.operand) + kStub + 4;
   if (!pin.value.empty())
     width += text_width(pin.value, Type::kValue) + (width == 0 ? kStub : 0) + 8;
+  if (!pin.note.empty()) width += text_width(pin.note, Type::kNote) + 8;
   return width;
 }
 
@@ -96,6 +128,13 @@ void first(std::vector<BoxPin>& pins, uint32_t pin) {
 
 Ink ink(Truth truth) {
   return truth == Truth::kTrue ? Ink::kOn : truth == Truth::kFalse ? Ink::kOff : Ink::kPlain;
+}
+
+std::string short_note(const Look& look, std::string_view operand) {
+  const Note* note = look.notes == nullptr ? nullptr : look.notes->find(operand);
+  if (note == nullptr) return {};
+  const bool both = !note->address.empty() && !note->comment.empty();
+  return note->address + (both ? " " : "") + shortened(note->comment, kPinNoteColumns);
 }
 
 std::string written_operand(const network::Network& network, network::Link link) {
@@ -159,6 +198,8 @@ void draw_box(Svg& svg, const Box& box, double x, double y) {
       svg.text(left - kStub - 3, at + 4, pin.operand, Type::kMono, Anchor::kEnd);
       double behind = left - kStub - 11 - text_width(pin.operand);
       svg.text(behind, at + 4, pin.value, Type::kValue, Anchor::kEnd);
+      if (!pin.value.empty()) behind -= text_width(pin.value, Type::kValue) + 8;
+      svg.text(behind, at + 4, pin.note, Type::kNote, Anchor::kEnd);
     }
     if (pin.ring) svg.ring(left - 4, at, 4);
     at += kPinRow;
@@ -174,12 +215,15 @@ void draw_box(Svg& svg, const Box& box, double x, double y) {
       behind += text_width(pin.operand) + 8;
     }
     svg.text(behind, text_y, pin.value, Type::kValue);
+    if (!pin.value.empty()) behind += text_width(pin.value, Type::kValue) + 8;
+    svg.text(behind, text_y, pin.note, Type::kNote);
     if (pin.ring) svg.ring(right + 4, at, 4);
     at += kPinRow;
   }
 }
 
-Symbol make_symbol(const Element& element, const Live* live) {
+Symbol make_symbol(const Element& element, const Look& look) {
+  const Live* live = look.live;
   Symbol out;
   out.kind = element.kind;
   out.modifier = element.modifier;
@@ -193,7 +237,11 @@ Symbol make_symbol(const Element& element, const Live* live) {
   }
   out.width = std::max(56.0, text_width(out.operand) + (text_in_wire ? 44 : 16));
   out.width = std::max(out.width, text_width(out.value, Type::kValue) + 16);
-  out.up = text_in_wire ? 14 : 32;
+  if (!text_in_wire) out.notes = note_lines(look, element.operand.text);
+  for (const std::string& line : out.notes) {
+    out.width = std::max(out.width, text_width(line, Type::kNote) + 12);
+  }
+  out.up = (text_in_wire ? 14 : 32) + static_cast<double>(out.notes.size()) * kNoteRow;
   out.down = out.value.empty() ? 16 : 28;
   return out;
 }
@@ -226,6 +274,11 @@ void draw_symbol(Svg& svg, const Symbol& symbol, double x, double width, double 
   if (symbol.modifier == Modifier::kNegated) svg.line(middle - 5, y + 8, middle + 5, y - 8, own);
   svg.text(middle, y + 4, letter(symbol.modifier), Type::kBold, Anchor::kMiddle);
   svg.text(middle, y - 16, symbol.operand, Type::kMono, Anchor::kMiddle);
+  double above = y - 16 - kNoteRow * static_cast<double>(symbol.notes.size());
+  for (const std::string& line : symbol.notes) {
+    svg.text(middle, above, line, Type::kNote, Anchor::kMiddle);
+    above += kNoteRow;
+  }
   svg.text(middle, y + 23, symbol.value, Type::kValue, Anchor::kMiddle);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/draw/live.h"
+#include "frontend/draw/picture.h"
 #include "frontend/draw/svg.h"
 #include "frontend/network/element_text.h"
 
@@ -18,6 +18,7 @@ struct BoxPin {
   std::string name;
   std::string operand;   // what is connected by name, not by a wire
   std::string value;     // live
+  std::string note;      // address and comment of the operand
   bool ring = false;     // negated
   bool through = false;  // its wire goes on: what is written stands above
   Truth truth = Truth::kUnknown;
@@ -38,10 +39,14 @@ struct Box {
 struct BoxStyle {
   uint32_t first_input = network::kNoPin;  // pins that stand in the first row
   uint32_t first_output = network::kNoPin;
-  const Live* live = nullptr;
+  const Look* look = nullptr;
   const Power* power = nullptr;
   bool rails = true;  // power and feedback arrive by wires; otherwise they are written
 };
+
+// Address and comment of an operand in one line, the comment cut where it is long; empty: it has
+// none.
+std::string short_note(const Look& look, std::string_view operand);
 
 // What is written for a link: an expression, TRUE for power, `box.output`.
 std::string written_operand(const network::Network& network, network::Link link);
@@ -58,14 +63,15 @@ struct Symbol {  // contact, coil, jump, return
   network::Kind kind = network::Kind::kContact;
   network::Modifier modifier = network::Modifier::kNone;
   std::string operand;
-  std::string value;  // live
+  std::string value;               // live
+  std::vector<std::string> notes;  // lines above the operand
   Truth own = Truth::kUnknown;
   double width = 0;
   double up = 0;
   double down = 0;
 };
 
-Symbol make_symbol(const network::Element& element, const Live* live);
+Symbol make_symbol(const network::Element& element, const Look& look);
 // In the middle of `width`, on the wire at `y`, with the wires that lead there.
 void draw_symbol(Svg& svg, const Symbol& symbol, double x, double width, double y, Ink in, Ink out);
 

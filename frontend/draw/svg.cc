@@ -34,7 +34,10 @@ constexpr const char* kStyle =
     ".ts{font-size:11px}\n"
     ".tc{font:italic 12px sans-serif;fill:#5b6673;fill:var(--m)}\n"
     ".tt{font:bold 15px sans-serif}\n"
-    ".tv{font-size:11px;fill:#0a7d33;fill:var(--on)}\n";
+    ".tv{font-size:11px;fill:#0a7d33;fill:var(--on)}\n"
+    ".tn{font:11px sans-serif;fill:#5b6673;fill:var(--m)}\n"
+    ".x{opacity:.5}\n"
+    ".x .l{stroke-dasharray:5 4}\n";
 
 std::string number(double value) {
   double rounded = std::round(value * 10) / 10;
@@ -92,6 +95,8 @@ const char* type_class(Type type) {
       return "tt";
     case Type::kValue:
       return "tv";
+    case Type::kNote:
+      return "tn";
   }
   return "";
 }
@@ -103,6 +108,8 @@ double column_width(Type type) {
       return 6.7;
     case Type::kComment:
       return 6.6;
+    case Type::kNote:
+      return 6.1;
     case Type::kTitle:
       return 9;
     default:
@@ -131,6 +138,9 @@ void Svg::grow(double x, double y) {
   width_ = std::max(width_, x);
   height_ = std::max(height_, y);
 }
+
+void Svg::begin_disabled() { body_ += "<g class=\"x\">\n"; }
+void Svg::end_disabled() { body_ += "</g>\n"; }
 
 void Svg::line(double x1, double y1, double x2, double y2, Ink ink) {
   body_ += "<line" + style("l", ink) + attribute("x1", x1) + attribute("y1", y1) +

@@ -25,6 +25,7 @@ enum class Type : uint8_t {
   kComment,  // in a proportional font
   kTitle,
   kValue,  // live
+  kNote,   // comments and addresses of operands, numbers of the order of execution
 };
 
 class Svg {
@@ -40,6 +41,10 @@ class Svg {
   void arc(double x, double y, double height, bool left, Ink ink = Ink::kPlain);  // of a coil
   void text(double x, double y, std::string_view text, Type type = Type::kMono,
             Anchor anchor = Anchor::kStart, Ink ink = Ink::kPlain);
+
+  // What is drawn in between is pale, and its lines are dashed.
+  void begin_disabled();
+  void end_disabled();
 
   double width() const { return width_; }
   double height() const { return height_; }

@@ -2,6 +2,7 @@
 
 #include "frontend/fbd/links.h"
 #include "frontend/network/comments.h"
+#include "frontend/network/head.h"
 #include "frontend/network/pins.h"
 #include "ir/types/types.h"
 
@@ -44,6 +45,38 @@ class Reader {
   }
 
  private:
+  // A network that begins behind what was read; the first one has nothing in front of it.
+  void begin_network() {
+    links_.finish(current());
+    const network::Network& last = current();
+    const bool fresh = last.elements.empty() && last.label.empty() && last.comments.empty();
+    if (!fresh || last.headed) body_.networks.emplace_back();
+    last_row_ = kNoRow;
+  }
+
+  // {network 'title' disabled}, from `at` of text_; returns where it ends.
+  size_t head(size_t at) {
+    const size_t end = std::min(text_.find('}', at), text_.size() - 1) + 1;
+    const std::string_view pragma = text_.substr(at, end - at);
+    // Others, as {IF ...}, are no rows.
+    const bool own = base::fold_name(pragma.substr(1)).starts_with(base::fold_name("network"));
+    if (!own) return end;
+    std::optional<network::Head> head = network::read_head(pragma);
+    if (!head) {
+      const uint32_t offset = begin_.offset + static_cast<uint32_t>(at);
+      cursor_.report(Code::kBadDiagramRow, {{offset}, {begin_.offset + static_cast<uint32_t>(end)}},
+                     "this row between { } is not understood", std::string(network::kHeadForm));
+      cursor_.forget();
+      return end;
+    }
+    begin_network();
+    attach(false);  // what stands in front of the row
+    current().headed = true;
+    current().title = std::move(head->title);
+    current().disabled = head->disabled;
+    return end;
+  }
+
   network::Network& current() { return body_.networks.back(); }
 
   void bad(std::string text, std::string fix =
@@ -52,19 +85,30 @@ class Reader {
     cursor_.report(Code::kBadDiagramRow, cursor_.token().span(), std::move(text), std::move(fix));
   }
 
-  // Comments up to there belong to the next row, or to the last one when they stand in its line.
+  // Titles begin networks. Comments up to there belong to the next row, or to the last one when they stand in its line.
   void take_comments(uint32_t until) {
     size_t from = behind_;
     size_t to = until - begin_.offset;
     behind_ = to;
     if (from >= to) return;
-    for (network::Comment& comment : network::comments_in(text_.substr(from, to - from))) {
-      bool same_line = text_.substr(from, comment.begin).find('\n') == std::string_view::npos;
-      if (same_line && last_row_ != kNoRow) {
-        add_comment(current().elements[last_row_].comment, comment.text);
-      } else {
-        pending_.push_back(std::move(comment.text));
+    for (size_t at = from; at < to;) {
+      if (text_[at] == '{') {
+        at = head(at);
+        continue;
       }
+      const size_t end = network::comment_end(text_, at);
+      if (end == at) {
+        ++at;
+        continue;
+      }
+      const bool same_line = text_.substr(from, at - from).find('\n') == std::string_view::npos;
+      std::string comment = network::comment_text(text_.substr(at, end - at));
+      if (same_line && last_row_ != kNoRow) {
+        add_comment(current().elements[last_row_].comment, comment);
+      } else {
+        pending_.push_back(std::move(comment));
+      }
+      at = end;
     }
   }
   static void add_comment(std::string& to, const std::string& comment) {
@@ -155,8 +199,11 @@ class Reader {
       bad("this is neither a label nor a box");
       return;
     }
-    links_.finish(current());
-    body_.networks.emplace_back();
+    const network::Network& above = current();
+    if (!above.headed || !above.elements.empty() || !above.label.empty()) {
+      links_.finish(current());
+      body_.networks.emplace_back();
+    }
     cursor_.take();
     current().label = std::move(name);
     current().span = cursor_.span_from(begin);

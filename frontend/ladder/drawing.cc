@@ -64,6 +64,8 @@ class RowReader {
         comment();
       } else if (current().segments.empty() && is_name_start(c) && label()) {
         continue;
+      } else if (c == '{' && current().segments.empty()) {
+        head();
       } else {
         segment();
       }
@@ -102,7 +104,8 @@ class RowReader {
     while (end < text_.size() && is_name_part(text_[end])) ++end;
     size_t colon = end;
     while (colon < text_.size() && (text_[colon] == ' ' || text_[colon] == '\t')) ++colon;
-    if (colon >= text_.size() || text_[colon] != ':' || current().kind == RowKind::kLabel) {
+    const bool taken = current().kind == RowKind::kLabel || current().kind == RowKind::kHead;
+    if (colon >= text_.size() || text_[colon] != ':' || taken) {
       return false;
     }
     current().kind = RowKind::kLabel;
@@ -110,6 +113,25 @@ class RowReader {
     current().label_bytes = static_cast<uint32_t>(end - at_);
     while (at_ <= colon) take();
     return true;
+  }
+
+  // {network 'title' disabled}
+  void head() {
+    const size_t begin = at_;
+    while (!at_line_end() && peek() != '}') take();
+    const bool closed = peek() == '}';
+    if (closed) take();
+    std::optional<network::Head> head;
+    const bool first = current().kind == RowKind::kBlank || current().kind == RowKind::kComment;
+    if (closed && first) head = network::read_head(text_.substr(begin, at_ - begin));
+    if (!head) {
+      const size_t end = closed ? at_ : begin + 1;
+      report(Code::kBadDrawing, begin, end, "this row between { } is not understood",
+             std::string(network::kHeadForm));
+      return;
+    }
+    current().kind = RowKind::kHead;
+    current().head = std::move(*head);
   }
 
   void segment() {
@@ -143,6 +165,9 @@ class RowReader {
     if (current().kind == RowKind::kLabel) {
       report(Code::kBadDrawing, begin, at_, "a rung stands in the row of a label",
              "give the label a row of its own, in front of the rung");
+    } else if (current().kind == RowKind::kHead) {
+      report(Code::kBadDrawing, begin, at_, "a rung stands in the row of its title",
+             "give what stands in { } a row of its own, in front of the rung");
     }
     current().kind = RowKind::kDrawing;
     current().segments.push_back(out);

@@ -9,6 +9,7 @@
 
 #include "base/diagnostics.h"
 #include "base/source.h"
+#include "frontend/network/head.h"
 
 namespace frontend::ladder {
 
@@ -29,7 +30,7 @@ struct Segment {
   bool is_element() const { return kind >= SegmentKind::kContact; }
 };
 
-enum class RowKind : uint8_t { kBlank, kComment, kLabel, kDrawing };
+enum class RowKind : uint8_t { kBlank, kComment, kLabel, kHead, kDrawing };
 
 struct Row {
   RowKind kind = RowKind::kBlank;
@@ -38,6 +39,7 @@ struct Row {
   bool damaged = false;               // something of it was reported
   uint32_t label = 0;                 // kLabel: its byte
   uint32_t label_bytes = 0;
+  network::Head head;  // kHead
 };
 
 // One row for each line of `text`, whose first byte is at `begin`. What cannot be read is reported

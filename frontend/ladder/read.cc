@@ -210,6 +210,15 @@ class Heads {
         uint32_t at = begin_.offset + row.label;
         out.label.span = {{at}, {at + row.label_bytes}};
       }
+      if (row.kind == RowKind::kHead) {
+        if (out.headed) {  // two titles in front of one rung
+          body.networks.push_back(std::move(out));
+          out = {};
+        }
+        out.headed = true;
+        out.title = row.head.title;
+        out.disabled = row.head.disabled;
+      }
       out.comments.insert(out.comments.end(), row.comments.begin(), row.comments.end());
     }
     return out;
@@ -240,7 +249,7 @@ network::Body read(std::string_view text, base::SourcePos begin, base::Diagnosti
     body.networks.push_back(std::move(network));
   }
   network::Network rest = heads.take(static_cast<uint32_t>(rows.size()), body);
-  if (!rest.label.empty() || !rest.comments.empty()) body.networks.push_back(std::move(rest));
+  if (!rest.label.empty() || !rest.comments.empty() || rest.headed) body.networks.push_back(std::move(rest));
   return body;
 }
 

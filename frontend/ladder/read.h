@@ -10,6 +10,8 @@
 //     |--[ Level > 10 ]--[ Total := Total + Level ]--( JMP Again )--|
 //   END_LADDER
 //
+// A row {network 'title' disabled} in front of a rung: network/head.h.
+//
 // Wires: `-` goes from side to side; `+` joins what touches it on all four sides; `|` goes up and
 // down between `+`. The first `|` of the drawing is the left rail: every `|` in its column is. A
 // `|` that ends a row after a wire or an element is the right rail, which may be left out. A rung

@@ -219,12 +219,12 @@ class Finder {
       }
     }
     if (rung.pieces.empty()) return drop_empty(rung);
-    if (!rung.damaged) warn_of_joined(rung);
+    if (!rung.damaged) check_joined(rung);
   }
 
-  // Two rungs below each other, without a blank row, are one when a `+` stands under a `+`. Rarely
-  // that is meant, and it can be drawn otherwise.
-  void warn_of_joined(const Rung& rung) {
+  // Two rungs below each other, without a blank row, would be one when a `+` stands under a `+`.
+  // Rarely that is meant, and it can be drawn so that nobody takes it for two.
+  void check_joined(const Rung& rung) {
     uint32_t complete = 0;
     for (uint32_t r = rung.first_row; r <= rung.last_row; ++r) {
       const std::vector<Segment>& row = rows_[r].segments;
@@ -239,9 +239,10 @@ class Finder {
       const Segment& at = row[1];
       diagnostics_.add(Code::kJoinedRungs,
                        {{begin_ + at.byte}, {begin_ + row[i - 1].byte + row[i - 1].bytes}},
-                       "this row is joined with the rung above, where `+` stands under `+`",
-                       "leave a blank row between two rungs; if it is one, let the branch with "
-                       "the second coil begin at its `+`");
+                       "this row looks like a rung of its own, and a `+` under a `+` joins it with "
+                       "the row above",
+                       "for two rungs, leave a blank row between them; for one, join the rows in "
+                       "front, and let the second coil begin at a `+` of its own: `+--( y )`");
     }
   }
 

@@ -94,7 +94,10 @@ inline bool is_rail(const Element& element) {
 
 // A rung, or what is drawn together.
 struct Network {
-  Text label;                         // a jump may name it; empty: none
+  Text label;             // a jump may name it; empty: none
+  std::string title;      // one line
+  bool disabled = false;  // kept, but not executed: only its label counts
+  bool headed = false;    // FBD: it begins at a row {network ...} (network/head.h)
   std::vector<std::string> comments;  // in front of it, without comment marks; a line may be long
   std::vector<Element> elements;
   base::SourceSpan span;

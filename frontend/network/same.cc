@@ -46,8 +46,9 @@ class Printer {
   std::string run(const Body& body) {
     for (const Headed& headed : with_heads(body)) {
       // In FBD what has no label is drawn together with what stands in front of it.
-      if (out_.empty() || !fbd_ || !headed.label.empty()) {
-        out_ += std::exchange(comments_, {}) + "network " + ir::fold_name(headed.label) + '\n';
+      if (out_.empty() || !fbd_ || !headed.label.empty() || headed.headed) {
+        out_ += std::exchange(comments_, {}) + "network " + ir::fold_name(headed.label) +
+                (headed.disabled ? " disabled " : " ") + headed.title + '\n';
         done_ = 0;
         unknown_ = 0;
         written_.clear();
@@ -203,8 +204,14 @@ std::vector<Headed> with_heads(const Body& body) {
   std::vector<Headed> out;
   Headed next;
   for (const Network& network : body.networks) {
-    if (!network.label.empty() && !next.label.empty()) out.push_back(std::exchange(next, {}));
+    const bool second_label = !network.label.empty() && !next.label.empty();
+    if (second_label || (network.headed && next.headed)) out.push_back(std::exchange(next, {}));
     if (!network.label.empty()) next.label = network.label.text;
+    if (network.headed) {
+      next.headed = true;
+      next.title = network.title;
+      next.disabled = network.disabled;
+    }
     for (const std::string& comment : network.comments) next.comments.push_back(comment);
     for (const Element& element : network.elements) {
       if (!element.comment.empty()) next.comments.push_back(element.comment);
@@ -213,7 +220,7 @@ std::vector<Headed> with_heads(const Body& body) {
     next.network = &network;
     out.push_back(std::exchange(next, {}));
   }
-  if (!next.label.empty() || !next.comments.empty()) out.push_back(std::move(next));
+  if (!next.label.empty() || !next.comments.empty() || next.headed) out.push_back(std::move(next));
   return out;
 }
 

@@ -8,8 +8,8 @@
 
 namespace frontend::network {
 
-// A text that two bodies share when they do the same in the same order and have the same labels
-// and comments, whatever the positions, the ids, the order of parallel contacts between two
+// A text that two bodies share when they do the same in the same order and have the same labels,
+// titles and comments, whatever the positions, the ids, the order of parallel contacts between two
 // elements that write something, pins that nothing is connected to, and rails. Contacts without
 // use are left out.
 //
@@ -24,6 +24,9 @@ std::string canonical(const Body& body, Timing timing = Timing::kExact);
 // elements belong to what follows them.
 struct Headed {
   std::string label;
+  std::string title;
+  bool disabled = false;
+  bool headed = false;  // as in Network
   std::vector<std::string> comments;
   const Network* network = nullptr;  // null: nothing follows
 };

@@ -59,6 +59,7 @@ std::string fixed_place(std::string_view operand) {
 
 bool may_skip(const Body& body) {
   for (const Network& network : body.networks) {
+    if (network.disabled) continue;
     for (const Element& element : network.elements) {
       if (element.kind == Kind::kJump || element.kind == Kind::kReturn) return true;
     }
@@ -74,6 +75,7 @@ void report_second_coils(const Body& body, base::Diagnostics& diagnostics) {
   };
   std::map<std::string, Coils> coils;
   for (const Network& network : body.networks) {
+    if (network.disabled) continue;
     for (const Element& element : network.elements) {
       const bool plain =
           element.modifier == Modifier::kNone || element.modifier == Modifier::kNegated;
@@ -107,6 +109,7 @@ bool is_connected(const Element& element, const PoweredBox& box) {
 Instances powered_instances(const Body& body) {
   Instances out;
   for (const Network& network : body.networks) {
+    if (network.disabled) continue;
     for (const Element& element : network.elements) {
       if (element.kind == Kind::kCoil || element.kind == Kind::kSink) {
         const std::string place = fixed_place(element.operand.text);
@@ -124,6 +127,7 @@ Instances powered_instances(const Body& body) {
 void report_boxes_without_power(const Body& body, base::Diagnostics& diagnostics) {
   const Instances powered = powered_instances(body);
   for (const Network& network : body.networks) {
+    if (network.disabled) continue;
     for (const Element& element : network.elements) {
       if (element.kind != Kind::kBlock || element.operand.empty()) continue;
       const PoweredBox* const box = powered_box(element.type.text);

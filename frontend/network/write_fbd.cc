@@ -6,6 +6,7 @@
 
 #include "frontend/lex/characters.h"
 #include "frontend/network/element_text.h"
+#include "frontend/network/head.h"
 #include "frontend/network/write.h"
 #include "ir/types/types.h"
 
@@ -36,6 +37,7 @@ class Writer {
     for (const Network& network : body_.networks) {
       network_ = &network;
       find_uses();
+      head(network);
       for (const std::string& comment : network.comments) row(comment_rows(comment, indent_));
       if (!network.label.empty()) row(network.label.text + ':');
       for (uint32_t i = 0; i < network.elements.size(); ++i) element(i);
@@ -46,6 +48,7 @@ class Writer {
   }
 
  private:
+  void head(const Network& network);
   void collect_names();
   void add_names(std::string_view text);
   void find_uses();
@@ -68,6 +71,7 @@ class Writer {
   const Body& body_;
   uint32_t indent_;
   const Network* network_ = nullptr;
+  bool below_head_ = false;  // the network above has a row {network ...}
   std::string out_;
   std::unordered_set<std::string> names_;    // everything that could be a name, folded
   std::unordered_set<std::string> claimed_;  // taken, or wires of the body that kept their names
@@ -80,6 +84,15 @@ class Writer {
   std::vector<std::string> wires_;                                      // of boxes of functions
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, Value> joints_;  // wires of ORs, by links
 };
+
+// What has no title stands in the network above unless something begins another one.
+void Writer::head(const Network& network) {
+  std::string text = head_text(network.title, network.disabled);
+  const bool begins = network.headed || (below_head_ && network.label.empty());
+  if (text.empty() && begins) text = "{network}";
+  if (!text.empty()) row(text);
+  below_head_ = !text.empty();
+}
 
 void Writer::collect_names() {
   for (const Network& network : body_.networks) {

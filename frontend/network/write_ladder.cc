@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "frontend/ladder/read.h"
 #include "frontend/network/element_text.h"
+#include "frontend/network/head.h"
 #include "frontend/network/layout.h"
 #include "frontend/network/same.h"
 #include "frontend/network/write.h"
@@ -57,6 +58,7 @@ class Canvas {
 // A character of any text that is no UTF-8 makes a byte a column everywhere (ladder/read.h).
 bool is_wide(const Body& body) {
   for (const Network& network : body.networks) {
+    if (!is_utf8(network.title)) return false;
     for (const std::string& comment : network.comments) {
       if (!is_utf8(comment)) return false;
     }
@@ -85,6 +87,8 @@ class Drawer {
     }
     for (size_t n = 0; n < drawings.size(); ++n) {
       if (!out_.empty()) out_ += '\n';
+      const std::string head = head_text(rungs[n].title, rungs[n].disabled);
+      if (!head.empty()) row(head);
       for (const std::string& comment : rungs[n].comments) row(comment_rows(comment, indent_));
       if (!rungs[n].label.empty()) row(rungs[n].label + ":");
       if (!drawings[n].texts.empty()) draw(drawings[n], rail);

@@ -116,6 +116,7 @@ void add_element(Content& out, const network::Element& element) {
 void add_diagram(Content& out, const network::Body& body) {
   for (const network::Network& network : body.networks) {
     out.add_folded(network.label.text);
+    if (network.disabled) continue;  // as a comment
     add_number(out, network.elements.size());
     for (const network::Element& element : network.elements) add_element(out, element);
   }

@@ -71,6 +71,7 @@ void Parser::Diagram::network(const network::Network& network) {
     label.name = tree_.add_name({made(network.label.text), network.label.span});
     emit(label, network.label.span);
   }
+  if (network.disabled) return;
   count_uses();
   for (uint32_t i = 0; i < network.elements.size(); ++i) {
     if (!done_[i]) element(i);

@@ -20,6 +20,13 @@ expect 0 stc draw "$examples/palletiser" -o pictures
 expect 0 stc draw "$examples/crossing_chart" Crossing -o crossing.svg
 expect 0 stc draw "$examples/heating" -o heating.svg
 
+# A narrow picture has rungs in several strips, and addresses can be left out.
+expect 0 stc draw "$examples/motor_starter" --width 300 -o narrow.svg
+cmp -s starter.svg narrow.svg && fail "a narrow picture is as wide as any"
+expect 0 stc draw "$examples/motor_starter" --plain -o plain.svg
+grep -q 'contactor' starter.svg || fail "no comment of an operand"
+if grep -q 'contactor' plain.svg; then fail "a comment in a plain picture"; fi
+
 # What cannot be drawn.
 expect 2 stc draw "$examples/palletiser" -o one.svg
 grep -q 'Belts, Layers' err || fail "does not say which there are"

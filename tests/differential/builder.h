@@ -101,7 +101,7 @@ struct Handles {
 
 class Builder {
  public:
-  Builder(uint64_t seed, bool construction);
+  Builder(uint64_t seed, bool construction, bool iec);
   Program run();
 
  private:
@@ -227,6 +227,10 @@ class Builder {
   Interface method_face(const char* prefix);
   void declare_contract(Family& family);
   Pou head_of(const Interface& face);
+  // Without a word a method is PUBLIC, and PROTECTED by the standard.
+  std::string visibility_words(const Interface& face) const {
+    return iec_ && face.visibility.empty() ? "PUBLIC " : face.visibility;
+  }
   Pou self_method(const Family& family, bool with_body);
   Class declare_class(const Class* base, const Family& family, bool last);
   void class_parameters(Pou& pou, Interface& face);
@@ -350,6 +354,7 @@ class Builder {
 
   Random random_;
   bool construction_;
+  bool iec_;  // the dialect
   Program program_;
   std::map<TypeRef, std::vector<Place>> places_;
   std::map<std::pair<bool, uint32_t>, TypeRef> strings_;

@@ -394,10 +394,10 @@ ChangeScript change_script(uint64_t seed) {
 }
 
 Finding examine_change(const std::string& first, const std::string& second,
-                       const ChangeScript& script, const std::string& passes) {
+                       const ChangeScript& script, const Build& build) {
   if (first == second) return skipped();
-  const base::Result<golden::Program> a = compiled(first, passes);
-  const base::Result<golden::Program> b = compiled(second, passes);
+  const base::Result<golden::Program> a = compiled(first, build);
+  const base::Result<golden::Program> b = compiled(second, build);
   if (!a.ok() || !b.ok()) return skipped();
   Finding found = Examination(*a, *b, online_change::Strategy::kInPlace).run(script);
   if (found.failed) return found;

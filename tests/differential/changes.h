@@ -23,6 +23,6 @@ ChangeScript change_script(uint64_t seed);
 
 // `Finding::key` is "skipped" when the second version does not compile or the first one traps.
 Finding examine_change(const std::string& first, const std::string& second,
-                       const ChangeScript& script, const std::string& passes);
+                       const ChangeScript& script, const Build& build);
 
 }  // namespace differential

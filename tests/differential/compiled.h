@@ -8,6 +8,14 @@
 
 namespace differential {
 
-base::Result<golden::Program> compiled(const std::string& source, const std::string& passes);
+// How it is compiled. The generator knows the dialect: programs for `iec` convert what the others
+// convert by themselves, and have none of their extensions.
+struct Build {
+  std::string passes;  // ir::PassSet::parse()
+  std::string dialect = "codesys";
+  bool is_iec() const { return dialect == "iec"; }
+};
+
+base::Result<golden::Program> compiled(const std::string& source, const Build& build);
 
 }  // namespace differential

@@ -128,11 +128,12 @@ std::optional<Expr> Builder::function_call(TypeRef type, int depth) {
   return std::nullopt;
 }
 
-// s[i]
+// s[i]: a number that counts from 0, with `iec` a character from 1.
 std::optional<Expr> Builder::character(TypeRef type, bool writable, int depth) {
-  const Place* text = find_text(type == elementary(ir::Kind::kWord), writable);
+  const bool wide = type == elementary(iec_ ? ir::Kind::kWchar : ir::Kind::kWord);
+  const Place* text = find_text(wide, writable);
   if (text == nullptr || text->constant) return std::nullopt;
-  Bounds all{0, program_[text->type].capacity};
+  Bounds all{iec_ ? 1 : 0, program_[text->type].capacity};
   Expr from = use(*text, 1);
   from.fixed = true;
   return node(type, "@0[@1]", {std::move(from), index(all, depth)});

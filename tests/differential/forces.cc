@@ -274,9 +274,9 @@ base::Status keep_certain(const ir::VerifiedImage& image, std::vector<vm::NamedV
 }  // namespace
 
 Finding examine_forces(const std::string& source, uint64_t seed, int scans,
-                       const std::string& passes) {
-  const base::Result<golden::Program> optimised = compiled(source, passes);
-  const base::Result<golden::Program> plain = compiled(source, "none");
+                       const Build& build) {
+  const base::Result<golden::Program> optimised = compiled(source, build);
+  const base::Result<golden::Program> plain = compiled(source, {"none", build.dialect});
   if (!optimised.ok()) return failed(kModes[1], "compile", base::to_string(optimised.error()));
   if (!plain.ok()) return failed(kModes[0], "compile", base::to_string(plain.error()));
   const base::Result<ir::VerifiedImage> images[] = {golden::link(*plain, nullptr, false),

@@ -12,6 +12,6 @@ namespace differential {
 
 // `Finding::key` is "skipped" when the program has nothing that can be forced.
 Finding examine_forces(const std::string& source, uint64_t seed, int scans,
-                       const std::string& passes);
+                       const Build& build);
 
 }  // namespace differential

@@ -8,7 +8,8 @@
 
 namespace differential {
 
-// Without `construction` no function block has an FB_Init: it runs at a cold start only.
-Program random_program(uint64_t seed, bool construction);
+// Without `construction` no function block has an FB_Init: it runs at a cold start only. `iec`: valid
+// with that dialect, which has fewer implicit conversions and operators, and no extensions.
+Program random_program(uint64_t seed, bool construction, bool iec = false);
 
 }  // namespace differential

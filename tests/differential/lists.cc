@@ -46,6 +46,7 @@ void Builder::rows(std::vector<Stmt>& out) {
 
 void Builder::rows_of_values(std::vector<Stmt>& out) {
   TypeRef type = elementary(static_cast<ir::Kind>(1 + below(10)));
+  if (iec_ && is_bits(type)) type = elementary(ir::Kind::kDint);
   row(out, "LD @0", {operand(type)});
   static constexpr const char* kSums[] = {"ADD", "SUB", "MUL"};
   for (uint32_t n = below(3); n > 0; --n) {

@@ -42,7 +42,8 @@ Stmt Builder::for_statement(int depth) {
     operands[0] = small_integer(type, from, to, 1);
   }
   bool by = step != 1 || down || one_in(4);
-  if (by && !down && one_in(6)) {
+  const bool any_step = !iec_ || group(type) == ir::Group::kSigned;  // a step can be negative
+  if (by && !down && one_in(6) && any_step) {
     operands.push_back(small_integer(type, trap_in(10) ? 0 : step, step + 2, 1));
   } else if (by) {
     operands.push_back(constant_text(type, step_text));

@@ -2,7 +2,7 @@
 // seeds FIRST.. on every tier, in N processes at a time. With --changes: random changes of them
 // while they run. With --forces: variables of them are forced. --shrink makes failing programs
 // small and prints each as a golden file; --write puts them into DIR instead. --passes LIST:
-// optimised by these, whatever the seed says. differential --print SEED [--changes]: the program of
+// optimised by these, whatever the seed says. --dialect: programs of that dialect, compiled with it. differential --print SEED [--changes]: the program of
 // a seed, its second version behind it. With --constructs: no program runs; how many have each
 // construct, and an error when one has none. Ends with "N passed, N failed".
 #include <sys/wait.h>
@@ -43,6 +43,7 @@ struct Options {
   bool shrink = false;
   std::string folder;
   std::string passes;
+  std::string dialect = "codesys";
 };
 
 Options parse_options(int argc, char** argv) {
@@ -65,6 +66,8 @@ Options parse_options(int argc, char** argv) {
       out.folder = argv[++i];
     } else if (word == "--passes" && more) {
       out.passes = argv[++i];
+    } else if (word == "--dialect" && more) {
+      out.dialect = argv[++i];
     } else if (word == "--scans" && more) {
       out.scans = std::atoi(argv[++i]);
     } else if (word == "--jobs" && more) {
@@ -83,8 +86,9 @@ class Case {
       : seed_(seed),
         options_(options),
         script_(differential::change_script(seed)),
-        passes_(options.passes.empty() ? differential::random_passes(seed) : options.passes),
-        first_(differential::random_program(seed, !options.changes)),
+        build_{options.passes.empty() ? differential::random_passes(seed) : options.passes,
+               options.dialect},
+        first_(differential::random_program(seed, !options.changes, build_.is_iec())),
         second_(options.changes ? differential::edited(first_, seed) : Program()) {}
 
   Finding examine() const { return examine(first_, second_); }
@@ -101,8 +105,8 @@ class Case {
     Finding now = examine();
     std::string first = differential::print(first_);
     return options_.changes ? differential::change_text(first, differential::print(second_), seed_,
-                                                        now, script_, passes_)
-                            : differential::run_text(first, seed_, now, options_.scans, passes_);
+                                                        now, script_, build_)
+                            : differential::run_text(first, seed_, now, options_.scans, build_);
   }
 
   void print() const {
@@ -118,10 +122,10 @@ class Case {
     return differential::isolated(
         [&] {
           if (options_.forces) {
-            return differential::examine_forces(source, seed_, options_.scans, passes_);
+            return differential::examine_forces(source, seed_, options_.scans, build_);
           }
-          return options_.changes ? differential::examine_change(source, next, script_, passes_)
-                                  : differential::examine(source, options_.scans, passes_);
+          return options_.changes ? differential::examine_change(source, next, script_, build_)
+                                  : differential::examine(source, options_.scans, build_);
         },
         kSecondsPerProgram);
   }
@@ -129,7 +133,7 @@ class Case {
   uint64_t seed_;
   const Options& options_;
   differential::ChangeScript script_;
-  std::string passes_;
+  differential::Build build_;
   Program first_;
   Program second_;
 };
@@ -206,7 +210,7 @@ std::optional<Tally> run_workers(uint64_t first, uint64_t end, const Options& op
 int run_constructs(const Options& options) {
   std::vector<differential::ConstructCount> counts = differential::no_constructs();
   for (uint64_t i = 0; i < options.numbers[1]; ++i) {
-    Program program = differential::random_program(options.numbers[0] + i, true);
+    Program program = differential::random_program(options.numbers[0] + i, true, options.dialect == "iec");
     differential::count_constructs(differential::print(program), counts);
   }
   size_t missing = 0;
@@ -259,7 +263,7 @@ int main(int argc, char** argv) {
     std::fprintf(
         stderr,
         "usage: differential FIRST COUNT [--scans N] [--jobs N] [--changes | --forces] [--shrink] "
-        "[--passes LIST] "
+        "[--passes LIST] [--dialect iec|codesys|twincat] "
         "[--write DIR] | --constructs | --print SEED [--changes]\n");
     return 2;
   }

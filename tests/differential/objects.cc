@@ -179,7 +179,7 @@ void Builder::class_methods(Pou& pou, Class& out, const Class* base, const Famil
     const bool of_contract = i >= family.helpers.size();
     if (abstract && of_contract && one_in(2)) {
       Pou head = head_of(face);
-      head.words = "ABSTRACT ";
+      head.words = (iec_ ? "PUBLIC " : "") + std::string("ABSTRACT ");
       pou.methods.push_back(std::move(head));
       out.missing.push_back(face.name);
       continue;
@@ -196,8 +196,8 @@ Pou Builder::method(const Class& owner, const Interface& face, const Class* base
   rounds_ = face.recursive ? kMaxRounds : 8;
   see_own(owner);
   Pou pou = head_of(face);
-  pou.words = face.visibility;
-  if (base != nullptr && one_in(2)) pou.words += "OVERRIDE ";
+  pou.words = visibility_words(face);
+  if (base != nullptr && (one_in(2) || iec_)) pou.words += "OVERRIDE ";
   for (const Variable& one : face.inputs) see(one, false);
   for (const Variable& one : face.outputs) see(one, true);
   for (const Variable& one : face.in_outs) see(one, true);
@@ -283,7 +283,11 @@ Stmt Builder::property(const Class& owner, const Variable& one) {
   std::vector<Stmt> get = statements(below(2), 0);
   get.push_back(simple(one.name + " := @0;", {expression(one.type, 2)}));
   out.clauses.push_back(
-      {"PROPERTY " + one.name + " : " + name_of(one.type) + " GET", {}, std::move(get), false});
+      {std::string(iec_ ? "PROPERTY PUBLIC " : "PROPERTY ") + one.name + " : " + name_of(one.type) +
+           " GET",
+       {},
+       std::move(get),
+       false});
   without_loops(owner.seen);
   see(one, false);
   std::vector<Stmt> set = statements(1, 0);

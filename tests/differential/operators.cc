@@ -22,7 +22,7 @@ Expr Builder::bool_operation(int depth) {
       if (std::optional<Expr> test = pointer_test(depth)) return std::move(*test);
       return read(type);
     case 0:
-      return node(type, infix(one_in(2) ? "AND_THEN" : "OR_ELSE"),
+      return node(type, infix(one_in(2) ? (iec_ ? "AND" : "AND_THEN") : iec_ ? "OR" : "OR_ELSE"),
                   {expression(type, depth - 1), expression(type, depth - 1)});
     case 1:
     case 2:
@@ -91,6 +91,7 @@ Expr Builder::integer_operation(TypeRef type, int depth) {
       return division(type, depth);
     case 3:
       if (group(type) == ir::Group::kSigned) return node(type, "(-@0)", {read(type)});
+      if (iec_) return conversion(type, depth);
       return node(type, infix(kLogic[below(3)]), {read(type), expression(type, depth - 1)});
     default:
       return conversion(type, depth);
@@ -110,7 +111,7 @@ Expr Builder::bits_operation(TypeRef type, int depth) {
       TypeRef wide = elementary(ir::Kind::kLword);
       bool is_character =
           type == elementary(ir::Kind::kByte) || type == elementary(ir::Kind::kWord);
-      if (is_character && one_in(2)) {
+      if (is_character && !iec_ && one_in(2)) {
         if (std::optional<Expr> found = character(type, false, depth)) return std::move(*found);
       }
       if (type == wide) return conversion(type, depth);

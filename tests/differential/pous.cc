@@ -96,7 +96,7 @@ void Builder::locals(Pou& pou, uint32_t count) {
     for (uint32_t n = below(2); n > 0; --n) declare(pou, Section::kTemp, any_data());
     for (uint32_t n = below(2); n > 0; --n) declare(pou, Section::kRetain, any_data());
   }
-  if (one_in(3)) declare(pou, Section::kStatic, any_data());
+  if (one_in(3) && !iec_) declare(pou, Section::kStatic, any_data());
   for (uint32_t n = below(3); n > 0; --n) declare(pou, Section::kConstant, any_elementary());
   if (!has_frame()) {
     for (const Variable& global : global_variables_) nameable_.push_back(global);
@@ -373,8 +373,8 @@ Program Builder::run() {
   return std::move(program_);
 }
 
-Program random_program(uint64_t seed, bool construction) {
-  return Builder(seed, construction).run();
+Program random_program(uint64_t seed, bool construction, bool iec) {
+  return Builder(seed, construction, iec).run();
 }
 
 }  // namespace differential

@@ -12,7 +12,7 @@ constexpr int kTries = 4;
 }  // namespace
 
 void Builder::references(Pou& pou) {
-  if (!nodes_.empty() && one_in(2)) link_nodes(pou);
+  if (!nodes_.empty() && one_in(2) && !(iec_ && has_frame())) link_nodes(pou);
   for (uint32_t n = below(4); n > 0; --n) refer(pou);
   if (one_in(2)) walk(pou);
 }
@@ -205,7 +205,7 @@ std::optional<Stmt> Builder::step() {
   bool whole = one_in(2);
   Expr distance = small_integer(number, 0, whole ? last : last * walker.step, 1);
   std::string sum = whole ? "SIZEOF(" + walker.element + ") * @0;" : "@0;";
-  if (!one_in(3)) {
+  if (!one_in(3) || iec_) {
     return simple(walker.runner + " := " + walker.begin + " + " + sum, {std::move(distance)});
   }
   Stmt out;

@@ -46,7 +46,7 @@ bool Builder::gives(const FunctionRow& row, TypeRef type) const {
       if (row.name == "MOD") return is_integer(type);
       return row.name == "EXPT" ? group(type) == ir::Group::kReal : is_number(type);
     case FunctionRule::kShift:
-      return is_bits(type) || is_integer(type);
+      return is_bits(type) || (is_integer(type) && !iec_);
     case FunctionRule::kBitwise:
     case FunctionRule::kNot:
       return boolean || is_bits(type);

@@ -33,12 +33,14 @@ Stmt Builder::statement(int depth) {
       found = one_in(2) ? method_statement(2) : block_call(2);
       break;
     case 4:
+      if (iec_) break;
       found = one_in(2) ? chain() : set_or_reset();
       break;
     case 5:
       found = one_in(4) ? step() : one_in(4) ? retarget() : one_in(2) ? rebind() : std::nullopt;
       break;
     case 14:
+      if (iec_) break;
       if (one_in(3)) return jump_over(depth);
       if (one_in(2)) found = jump_back(depth);
       break;
@@ -91,7 +93,7 @@ std::optional<Stmt> Builder::bit_assignment() {
     if (!place.writable) return std::nullopt;
     Expr bit = use(place, 1);
     bit.fixed = true;
-    const char* word = one_in(4) ? "@0 S= @1;" : "@0 := @1;";
+    const char* word = one_in(4) && !iec_ ? "@0 S= @1;" : "@0 := @1;";
     return simple(word, {std::move(bit), expression(elementary(ir::Kind::kBool), 2)});
   }
   static constexpr ir::Kind kWords[] = {ir::Kind::kByte, ir::Kind::kWord, ir::Kind::kDword,
@@ -116,7 +118,9 @@ std::optional<Stmt> Builder::bit_assignment() {
 }
 
 std::optional<Stmt> Builder::character_assignment() {
-  TypeRef type = elementary(one_in(3) ? ir::Kind::kWord : ir::Kind::kByte);
+  const bool wide = one_in(3);
+  TypeRef type = iec_ ? elementary(wide ? ir::Kind::kWchar : ir::Kind::kChar)
+                      : elementary(wide ? ir::Kind::kWord : ir::Kind::kByte);
   std::optional<Expr> to = character(type, true, 1);
   if (!to) return std::nullopt;
   return simple("@0 := @1;", {std::move(*to), expression(type, 2)});

@@ -95,9 +95,9 @@ std::string random_passes(uint64_t seed) {
   return kind < 4 ? "all" : kind == 4 ? "none" : ir::PassSet::from_bits(bits).text();
 }
 
-Finding examine(const std::string& source, int scans, const std::string& passes) {
+Finding examine(const std::string& source, int scans, const Build& build) {
   Finding out;
-  base::Result<golden::Program> program = compiled(source, passes);
+  base::Result<golden::Program> program = compiled(source, build);
   if (!program.ok()) {
     const std::string text = base::to_string(program.error());
     return failure("compile " + code_of(text), text);

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "tests/differential/compiled.h"
+
 namespace differential {
 
 struct Finding {
@@ -16,8 +18,8 @@ struct Finding {
   std::string expected;  // line of state that the evaluator has there
 };
 
-// Optimised by `passes`, apart from the evaluator's program (ir::PassSet::parse()).
-Finding examine(const std::string& source, int scans, const std::string& passes);
+// Optimised by the passes of `build`, apart from the evaluator's program.
+Finding examine(const std::string& source, int scans, const Build& build);
 // The passes for the program of a seed: all, none, or some.
 std::string random_passes(uint64_t seed);
 Finding failure(std::string key, std::string text);

@@ -16,7 +16,7 @@ Stmt Builder::fault() {
   static constexpr const char* kFaults[] = {"spare := 1 / (guard - guard);",
                                             "spare := 7 MOD (guard - guard);",
                                             "spare := LREAL_TO_DINT(DINT_TO_LREAL(guard) + 1E30);",
-                                            "spare := BCD_TO_DINT(DWORD#16#F + 0);"};
+                                            "spare := BCD_TO_DINT(DWORD#16#F OR DINT_TO_DWORD(guard));"};
   clause.body.push_back(simple(kFaults[below(4)], {}));
   out.clauses.push_back(std::move(clause));
   return out;

@@ -13,7 +13,8 @@ constexpr uint64_t kMostArrayBytes = 8192;
 
 }  // namespace
 
-Builder::Builder(uint64_t seed, bool construction) : random_(seed), construction_(construction) {
+Builder::Builder(uint64_t seed, bool construction, bool iec)
+    : random_(seed), construction_(construction), iec_(iec) {
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     Type type;
     type.name = std::string(ir::elementary_name(static_cast<ir::Kind>(i)));
@@ -66,7 +67,7 @@ TypeRef Builder::named(Form form, std::string name, TypeRef base) {
 }
 
 TypeRef Builder::pointer_to(TypeRef target) {
-  return named(Form::kPointer, (one_in(3) ? "REF_TO " : "POINTER TO ") + name_of(target), target);
+  return named(Form::kPointer, (one_in(3) && !iec_ ? "REF_TO " : "POINTER TO ") + name_of(target), target);
 }
 
 TypeRef Builder::open_array(TypeRef element, uint32_t dims) {

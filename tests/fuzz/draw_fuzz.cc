@@ -41,7 +41,14 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     check_text(body);
     for (const draw::Live* values :
          {static_cast<const draw::Live*>(nullptr), static_cast<const draw::Live*>(&live)}) {
-      std::string svg = draw::draw_body(body, "fuzz", values);
+      draw::Notes notes;
+      for (const network::Network& each : body.networks) {
+        for (const network::Element& one : each.elements) {
+          notes.set(one.operand.text, {"%QX0.0", one.operand.text});
+        }
+      }
+      const double width = values != nullptr ? 0 : 100;  // every column in a strip of its own
+      std::string svg = draw::draw_body(body, "fuzz", {values, &notes, width});
       base::check(svg.ends_with("</svg>\n"), "a whole picture");
     }
     draw::variables(body);

@@ -13,11 +13,15 @@
 namespace stc {
 namespace {
 
+constexpr uint64_t kPictureWidth = 1200;  // a screen, or paper across
+
 constexpr tools::OptionRow kDrawOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE|DIR", "FILE.svg for one picture, or a folder for all (default: stdout)"},
     {"--live", "HOST|DIR", "colour what is powered and active there now, and show values"},
     {"--values", "FILE", "the same with values from a file, NAME=VALUE a line"},
+    {"--width", "PIXELS", "a longer rung goes on below (default 1200; 0: it never does)"},
+    {"--plain", nullptr, "leave out addresses and comments of operands"},
     {"--instance", "PATH", "whose values: Line.Filler (default: the name of the program)"},
 };
 constexpr tools::Command kDrawCommand{"draw", "PATHS... [POU]",
@@ -86,8 +90,9 @@ Selection selection(const tools::Options& options) {
 
 class Artist {
  public:
-  Artist(const tools::Options& options, const Project& project, const frontend::Tree& tree)
-      : options_(options), project_(project), tree_(tree) {}
+  Artist(const tools::Options& options, const Project& project, const frontend::Tree& tree,
+         uint64_t width)
+      : options_(options), project_(project), tree_(tree), width_(static_cast<double>(width)) {}
 
   base::Result<std::string> draw(const Drawn& drawn) {
     frontend::draw::Live live(instance(drawn));
@@ -107,7 +112,10 @@ class Artist {
       return frontend::draw::draw_chart(tree_, project_.sources, tree_.charts[drawn.pou->chart],
                                         title, values);
     }
-    return frontend::draw::draw_body(tree_.diagrams[drawn.pou->diagram], title, values);
+    const frontend::draw::Notes notes =
+        frontend::draw::notes_of(tree_, project_.sources, *drawn.pou, drawn.owner);
+    frontend::draw::Look look{values, options_.has("--plain") ? nullptr : &notes, width_};
+    return frontend::draw::draw_body(tree_.diagrams[drawn.pou->diagram], title, look);
   }
 
  private:
@@ -136,6 +144,7 @@ class Artist {
   const tools::Options& options_;
   const Project& project_;
   const frontend::Tree& tree_;
+  double width_;
 };
 
 std::string list(const std::vector<Drawn>& drawn) {
@@ -172,6 +181,8 @@ base::Status draw_all(const tools::Options& options, Artist& artist,
 }
 
 base::Status draw(const tools::Options& options) {
+  base::Result<uint64_t> width = options.number("--width", kPictureWidth);
+  if (!width.ok()) return width.error();
   Selection chosen = selection(options);
   base::Result<Project> project = open_project(options, chosen.paths);
   if (!project.ok()) return project.error();
@@ -197,7 +208,7 @@ base::Status draw(const tools::Options& options) {
         base::Refusal::kUsage,
         chosen.pou.empty() ? "draw: " + there : "draw: no drawing `" + chosen.pou + "`; " + there};
   }
-  Artist artist(options, *project, tree);
+  Artist artist(options, *project, tree, *width);
   return draw_all(options, artist, drawn);
 }
 

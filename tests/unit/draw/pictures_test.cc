@@ -24,7 +24,8 @@ std::string read_file(const fs::path& path) {
   return out.str();
 }
 
-std::string picture(const std::string& source, const Live* live) {
+std::string picture(const std::string& source, const Live* live, bool notes = true,
+                    double width = 0) {
   base::SourceMap sources;
   sources.add("a.st", source);
   base::Diagnostics diagnostics;
@@ -32,7 +33,9 @@ std::string picture(const std::string& source, const Live* live) {
   parse(sources, 0, tree, diagnostics);
   for (const base::Diagnostic& one : diagnostics.all()) ADD_FAILURE() << one.text;
   if (!tree.charts.empty()) return draw_chart(tree, sources, tree.charts[0], "Title", live);
-  return tree.diagrams.empty() ? "nothing" : draw_body(tree.diagrams[0], "Title", live);
+  if (tree.diagrams.empty()) return "nothing";
+  const Notes known = notes_of(tree, sources, tree.pous[0], nullptr);
+  return draw_body(tree.diagrams[0], "Title", {live, notes ? &known : nullptr, width});
 }
 
 std::string ladder(const std::string& rows) {
@@ -93,7 +96,8 @@ TEST(Pictures, AreAsTheyWere) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".st") continue;
     for (bool shown : {false, true}) {
-      std::string svg = picture(read_file(entry.path()), shown ? &live : nullptr);
+      const double width = entry.path().stem() == "wide" ? 420 : 0;
+      std::string svg = picture(read_file(entry.path()), shown ? &live : nullptr, true, width);
       fs::path expected = entry.path();
       expected.replace_extension(shown ? ".live.svg" : ".svg");
       if (std::getenv("STC_UPDATE_PICTURES") != nullptr) std::ofstream(expected) << svg;
@@ -102,7 +106,7 @@ TEST(Pictures, AreAsTheyWere) {
       ++seen;
     }
   }
-  EXPECT_GE(seen, 6u);
+  EXPECT_GE(seen, 14u);
 }
 
 TEST(Pictures, NeedNothingFromElsewhere) {
@@ -128,24 +132,70 @@ TEST(Pictures, TextIsEscaped) {
   EXPECT_NE(svg.find("T\xC3\xBCr"), std::string::npos);
 }
 
-TEST(Pictures, ABridgeIsDrawnAsBoxesAndWires) {
+size_t count(const std::string& svg, const char* what) {
+  size_t found = 0;
+  for (size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) ++found;
+  return found;
+}
+
+TEST(Pictures, ABridgeHasRailsAndDotsWhereWiresMeet) {
   std::string svg = picture(ladder("|-[a]-+-[y]-------+-(x)\n"
                                    "      +-[a]-+     |\n"
                                    "|-[b]-------+-[x]-+\n"),
                             nullptr);
-  EXPECT_EQ(svg.find("class=\"r\""), std::string::npos) << "no rails";
+  EXPECT_EQ(count(svg, "class=\"r\""), 2u) << "rails";
+  EXPECT_EQ(count(svg, "<circle class=\"d\""), 3u) << "one branch that parts, two that meet";
+  EXPECT_EQ(svg.find("TRUE"), std::string::npos) << "power is a wire";
   expect_well_formed(svg);
+}
+
+TEST(Pictures, LongRungsGoOnBelowWhereTheSameNumberStands) {
+  const std::string rung = ladder("|--[ a ]--[ b ]--[ c ]--[ d ]--[ e ]--( x )--|\n");
+  const std::string whole = picture(rung, nullptr);
+  EXPECT_EQ(count(whole, "class=\"tn\""), 0u);
+  const std::string wrapped = picture(rung, nullptr, true, 200);
+  EXPECT_EQ(count(wrapped, ">1</text>"), 3u) << "of the network, of the arrow and where it goes on";
+  EXPECT_EQ(count(wrapped, ">2</text>"), 2u);
+  EXPECT_EQ(count(wrapped, "class=\"r\""), 2u) << "rails at its begin and its end";
+  // Each strip has one column at least.
+  EXPECT_EQ(count(picture(rung, nullptr, true, 1), "<path class=\"d\""), 2 * 5u);
+  expect_well_formed(wrapped);
+}
+
+TEST(Pictures, OperandsHaveTheirAddressAndComment) {
+  const std::string source =
+      "PROGRAM p\nVAR\n  a AT %IX0.3 : BOOL;  // left\n  x : BOOL;\nEND_VAR\nLADDER\n"
+      "|--[ a ]--( x )--|\nEND_LADDER\nEND_PROGRAM\n";
+  const std::string svg = picture(source, nullptr);
+  EXPECT_NE(svg.find(">%IX0.3</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">left</text>"), std::string::npos);
+  EXPECT_EQ(count(picture(source, nullptr, false), "class=\"tn\""), 0u);
+}
+
+TEST(Pictures, ADisabledRungIsPaleAndHasNoPower) {
+  Live live("p");
+  live.set("p.a", "TRUE");
+  const std::string rung = "{network 'Lamp' disabled}\n|--[ a ]--( x )--|\n";
+  const std::string svg = picture(ladder(rung), &live);
+  EXPECT_EQ(count(svg, "<g class=\"x\">"), 1u);
+  EXPECT_NE(svg.find(">Lamp</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">disabled</text>"), std::string::npos);
+  EXPECT_EQ(count(svg, "\"l on\""), 0u);
+}
+
+TEST(Pictures, BoxesHaveTheNumberOfTheirTurn) {
+  const std::string svg = picture(
+      "PROGRAM p\nFBD\n  WIRE s := ADD(a, 1);\n  b := s;\n  c := s;\n  WIRE t := MUL(b, c);\n"
+      "  d := t;\nEND_FBD\nEND_PROGRAM\n",
+      nullptr);
+  EXPECT_EQ(count(svg, "class=\"tn\">1</text>"), 1u);
+  EXPECT_EQ(count(svg, "class=\"tn\">2</text>"), 1u);
 }
 
 TEST(Pictures, PowerIsColouredAsFarAsItIsKnown) {
   Live live("p");
   live.set("p.a", "TRUE");
   live.set("p.b", "FALSE");
-  auto count = [](const std::string& svg, const char* what) {
-    size_t found = 0;
-    for (size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) ++found;
-    return found;
-  };
   std::string on = picture(ladder("|--[ a ]--( x )--|\n"), &live);
   EXPECT_GT(count(on, "\"l on\""), 5u);
   EXPECT_EQ(count(on, "\"l of\""), 0u);

@@ -77,9 +77,9 @@ TEST(Limits, LinksOfARung) {
     for (size_t i = 0; i < count; ++i) out += "|--[ a ]--+--+--( b )--|\n";
     return out + "END_LADDER\nEND_PROGRAM\n";
   };
-  EXPECT_EQ(codes(rung(1000)), "4:2 W0034\n4:19 W0035\n");
-  EXPECT_EQ(codes(rung(1025)), "3:4 E6003\n4:2 W0034\n");
-  EXPECT_EQ(codes(rung(100000)), "3:4 E6003\n4:2 W0034\n");
+  EXPECT_EQ(codes(rung(1000)), "4:2 E1050\n4:19 W0035\n");
+  EXPECT_EQ(codes(rung(1025)), "3:4 E6003\n4:2 E1050\n");
+  EXPECT_EQ(codes(rung(100000)), "3:4 E6003\n4:2 E1050\n");
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#!/bin/sh
+# Sources in the style of each vendor compile, run, and run the same after `stc fmt`; objects of
+# TwinCAT are imported, and the text that comes of them does the same, too.
+. "$(dirname "$0")/lib.sh"
+corpus="$source_dir/tests/corpus/vendors"
+
+# runs DIALECT WHAT FILE: the state after 40 cycles into FILE.
+runs() {
+  expect 0 stvm run "$2" --dialect "$1" --virtual-time --scans 40 --name p --state
+  cp out "$3"
+  [ -s "$3" ] || fail "no state of $2"
+}
+same_laid_out() {  # DIALECT FOLDER: of sources, whose state is in `before`
+  expect 0 stc fmt "$2"
+  expect 0 stc fmt --check "$2"
+  runs "$1" "$2" after
+  cmp -s before after || fail "$2 does something else when it is laid out"
+}
+
+seen=0
+for one in "$corpus"/codesys/*.st "$corpus"/openplc/*.st; do
+  name=$(basename "$one" .st)
+  mkdir -p "text/$name"
+  cp "$one" "text/$name/"
+  runs codesys "text/$name" before
+  same_laid_out codesys "text/$name"
+  seen=$((seen + 1))
+done
+for one in "$corpus"/twincat/*; do
+  name=$(basename "$one")
+  runs twincat "$one" before
+  expect 0 stc import "$one" -o "imported/$name"
+  runs twincat "imported/$name" after
+  cmp -s before after || fail "$one does something else when it is imported"
+  same_laid_out twincat "imported/$name"
+  seen=$((seen + 1))
+done
+[ "$seen" -ge 34 ] || fail "only $seen sources"
