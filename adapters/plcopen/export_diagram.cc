@@ -4,13 +4,13 @@
 #include <limits>
 #include <set>
 
+#include "adapters/plcopen/for_others.h"
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
 #include "frontend/network/order.h"
 #include "frontend/network/same.h"
-#include "frontend/network/write.h"
 
 namespace plcopen {
 
@@ -372,26 +372,6 @@ bool Writer::is_in_out(const std::string& type, const std::string& pin) const {
   }
   return false;
 }
-
-namespace {
-
-// What no element says as other tools understand it: a title becomes the first comment of its
-// network, and a disabled network a comment that shows it, since others would execute it.
-network::Body for_others(network::Body body) {
-  for (network::Network& each : body.networks) {
-    if (!each.title.empty()) each.comments.insert(each.comments.begin(), each.title);
-    if (!each.disabled) continue;
-    network::Body alone{body.language, {}, {}};
-    alone.networks.emplace_back().elements = each.elements;
-    std::string text = network::write_ladder(alone, 0).value_or(std::string());
-    if (text.empty()) text = network::write_fbd(alone, 0);
-    each.comments.push_back("disabled:\n" + text);
-    each.elements.clear();
-  }
-  return body;
-}
-
-}  // namespace
 
 void Writer::diagram(Node body, const network::Body& drawn, const std::string& path) {
   const network::Body* best = &drawn;

@@ -144,7 +144,8 @@ void Rung::stack() {
       down[row] = std::max(down[row], shapes_[c].down);
     }
     for (const Wire& wire : p.wires) {
-      const bool goes_on = !last && wire.from <= strip.last && (wire.to > strip.last || wire.to_rail);
+      const bool longer = wire.to > strip.last || wire.to_rail;
+      const bool goes_on = !last && longer && wire.from <= strip.last;
       if (goes_on) strip.going_on.push_back(wire.row);
       const bool begun = wire.from < strip.last || (last && wire.from <= strip.last) || goes_on;
       const bool here = begun && (wire.to > strip.first || wire.to_rail);

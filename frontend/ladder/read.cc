@@ -249,7 +249,8 @@ network::Body read(std::string_view text, base::SourcePos begin, base::Diagnosti
     body.networks.push_back(std::move(network));
   }
   network::Network rest = heads.take(static_cast<uint32_t>(rows.size()), body);
-  if (!rest.label.empty() || !rest.comments.empty() || rest.headed) body.networks.push_back(std::move(rest));
+  const bool named = !rest.label.empty() || rest.headed;
+  if (named || !rest.comments.empty()) body.networks.push_back(std::move(rest));
   return body;
 }
 

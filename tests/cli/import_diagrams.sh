@@ -185,10 +185,10 @@ rm -rf made
 expect 0 stc import small.xml -o made
 cat >wanted <<'T'
 LADDER
-  (* first *)
+  {network 'first'}
   |--[ b ]--[ a := ADD(a, 7) ]-------------------------------|
 
-  (* second *)
+  {network 'second'}
   Second:
   |--[/ b ]--[ t: TON  IN:=_ ]------------------------( b )--|
 END_LADDER

@@ -157,6 +157,8 @@ complete -c stc -n '__fish_seen_subcommand_from draw' -l format -x -a 'text json
 complete -c stc -n '__fish_seen_subcommand_from draw' -l output -s o -r -F -d 'FILE.svg for one picture, or a folder for all (default: stdout)'
 complete -c stc -n '__fish_seen_subcommand_from draw' -l live -x -a '(__fish_complete_directories)' -d 'colour what is powered and active there now, and show values'
 complete -c stc -n '__fish_seen_subcommand_from draw' -l values -r -F -d 'the same with values from a file, NAME=VALUE a line'
+complete -c stc -n '__fish_seen_subcommand_from draw' -l width -x -d 'a longer rung goes on below (default 1200; 0: it never does)'
+complete -c stc -n '__fish_seen_subcommand_from draw' -l plain -d 'leave out addresses and comments of operands'
 complete -c stc -n '__fish_seen_subcommand_from draw' -l instance -x -d 'whose values: Line.Filler (default: the name of the program)'
 complete -c stc -n '__fish_seen_subcommand_from draw' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stc -n '__fish_seen_subcommand_from draw' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
