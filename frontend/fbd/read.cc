@@ -85,8 +85,8 @@ class Reader {
     cursor_.report(Code::kBadDiagramRow, cursor_.token().span(), std::move(text), std::move(fix));
   }
 
-  // Titles begin networks. Comments up to there belong to the next row, or to the last one when they
-  // stand in its line.
+  // Titles begin networks. Comments up to there belong to the next row, or to the last one when
+  // they stand in its line.
   void take_comments(uint32_t until) {
     size_t from = behind_;
     size_t to = until - begin_.offset;
