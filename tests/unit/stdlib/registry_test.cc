@@ -53,6 +53,7 @@ struct Library {
   std::string interface(const frontend::PouDecl& pou) const {
     using frontend::VarSection;
     std::string in = variables(pou, {VarSection::kInput, VarSection::kInOut});
+    if (in.empty() && pou.result.valid()) return "-> " + std::string(text(tree[pou.result].span));
     if (pou.result.valid()) return in + " -> " + std::string(text(tree[pou.result].span));
     return in + " => " + variables(pou, {VarSection::kOutput});
   }
