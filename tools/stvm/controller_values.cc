@@ -10,12 +10,6 @@ namespace {
 
 constexpr size_t kRoomForCount = 24;  // ", and 4096 more"
 
-base::Error too_much(const std::string& name) {
-  return {base::Refusal::kTooMany, "one request reads " + std::to_string(vm::kMaxReadBytes) +
-                                       " bytes of variables; with `" + name +
-                                       "` it would be more: name fewer of them, or parts"};
-}
-
 base::Error other_version() { return {base::Refusal::kStaleBase, "another version runs now"}; }
 
 using NamedValues = std::vector<vm::NamedValue>;
@@ -92,27 +86,21 @@ base::Result<vm::LiveCopy> ControllerService::copy_of(std::vector<ir::DataRange>
 
 base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
   const ir::VerifiedImage version = controller_.verified();
-  const ir::Image& image = version.image();
-  vm::Values values;
-  std::vector<ir::Symbol> symbols;
-  ir::ValueRanges ranges(image, vm::kMaxReadBytes);
-  for (const std::string& name : request.names) {
-    base::Result<ir::NamedSymbol> named = ir::named_symbol(version.names(), name);
-    if (!named.ok()) return named.error();
-    if (!ranges.add(named->symbol)) return too_much(named->path);
-    symbols.push_back(named->symbol);
-    values.rows.push_back({std::move(named->path), ir::type_text(image, named->symbol), {}});
-  }
-  base::Result<vm::LiveCopy> copy = copy_of(ranges.take());
+  base::Result<const AskedValues::Request*> asked = asked_.find(version, request.names);
+  if (!asked.ok()) return asked.error();
+  base::Result<vm::LiveCopy> copy = copy_of((*asked)->ranges);
   if (!copy.ok()) return copy.error();
+  vm::Values values;
   values.cycle = copy->first_cycle();
   values.last_cycle = copy->last_cycle();
   size_t left = vm::kMaxMessageBytes;
-  for (size_t i = 0; i < symbols.size(); ++i) {
+  for (const AskedValues::Variable& variable : (*asked)->variables) {
     const size_t room = std::min<size_t>(left, vm::kMaxNameBytes);
-    values.rows[i].value = ir::format_value(image, symbols[i], copy->memory(), room);
-    if (values.rows[i].value.size() > room) return too_long();
-    left -= values.rows[i].value.size();
+    std::string value =
+        ir::format_value(version.image(), variable.named.symbol, copy->memory(), room);
+    if (value.size() > room) return too_long();
+    left -= value.size();
+    values.rows.push_back({variable.named.path, variable.type, std::move(value)});
   }
   return vm::encode(values);
 }

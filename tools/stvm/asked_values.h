@@ -1,0 +1,39 @@
+// The variables that a request for values names. Tools that watch a program ask for the same ones
+// again and again: those of the last requests are kept, so that names are looked up once for each
+// version of the program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ir/bytecode/value_ranges.h"
+#include "ir/bytecode/variable_names.h"
+#include "ir/bytecode/verify.h"
+
+namespace stvm {
+
+class AskedValues {
+ public:
+  struct Variable {
+    ir::NamedSymbol named;
+    std::string type;  // as people read it
+  };
+  struct Request {
+    std::vector<Variable> variables;    // by name
+    std::vector<ir::DataRange> ranges;  // where their values are
+  };
+
+  // Valid until the next call. kNoSuchVariable; kTooMany: they have more than vm::kMaxReadBytes.
+  base::Result<const Request*> find(const ir::VerifiedImage& version,
+                                    const std::vector<std::string>& names);
+
+ private:
+  struct Kept {
+    base::Digest version{};
+    std::vector<std::string> names;
+    Request request;
+  };
+  std::vector<Kept> kept_;  // the last one that was asked for is the last
+};
+
+}  // namespace stvm
