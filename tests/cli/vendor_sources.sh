@@ -2,7 +2,7 @@
 # Sources in the style of each vendor compile, run, and run the same after `stc fmt`; objects of
 # TwinCAT are imported, and the text that comes of them does the same, too.
 . "$(dirname "$0")/lib.sh"
-corpus="$source_dir/tests/corpus/vendors"
+corpus="$source_dir/tests/vendors"
 
 # runs DIALECT WHAT FILE: the state after 40 cycles into FILE.
 runs() {
