@@ -15,13 +15,13 @@
 #include "online_change/store/retain_keeper.h"
 #include "tools/stvm/admission.h"
 #include "tools/stvm/aside_writer.h"
-#include "tools/stvm/asked_values.h"
 #include "tools/stvm/event_log.h"
 #include "tools/stvm/fate_message.h"
 #include "tools/stvm/live_report.h"
 #include "tools/stvm/rehearsal.h"
 #include "tools/stvm/trial_guard.h"
 #include "tools/stvm/unit_table.h"
+#include "vm/runtime/asked_values.h"
 #include "vm/runtime/boundary.h"
 #include "vm/runtime/live_copy.h"
 #include "vm/runtime/protocol.h"
@@ -350,7 +350,7 @@ class ControllerService : public vm::Service {
   std::atomic<bool> stop_wanted_{false};
   std::string stopped_by_;
   AsideWriter aside_;  // by store_beside()
-  AskedValues asked_;
+  vm::AskedValues asked_;
   online_change::BackOff keep_again_;
   bool store_is_behind_ = false;  // what was switched or undone is not stored
 };

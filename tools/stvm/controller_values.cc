@@ -86,7 +86,7 @@ base::Result<vm::LiveCopy> ControllerService::copy_of(std::vector<ir::DataRange>
 
 base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
   const ir::VerifiedImage version = controller_.verified();
-  base::Result<const AskedValues::Request*> asked = asked_.find(version, request.names);
+  base::Result<const vm::AskedValues::Request*> asked = asked_.find(version, request.names);
   if (!asked.ok()) return asked.error();
   base::Result<vm::LiveCopy> copy = copy_of((*asked)->ranges);
   if (!copy.ok()) return copy.error();
@@ -94,7 +94,7 @@ base::Result<base::Bytes> ControllerService::get(const vm::Request& request) {
   values.cycle = copy->first_cycle();
   values.last_cycle = copy->last_cycle();
   size_t left = vm::kMaxMessageBytes;
-  for (const AskedValues::Variable& variable : (*asked)->variables) {
+  for (const vm::AskedValues::Variable& variable : (*asked)->variables) {
     const size_t room = std::min<size_t>(left, vm::kMaxNameBytes);
     std::string value =
         ir::format_value(version.image(), variable.named.symbol, copy->memory(), room);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "ir/bytecode/verify.h"
 #include "vm/runtime/forces.h"
 
 namespace vm {

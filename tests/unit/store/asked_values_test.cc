@@ -1,5 +1,5 @@
-// What the last requests asked for is kept (tools/stvm/asked_values.h).
-#include "tools/stvm/asked_values.h"
+// What the last requests asked for is kept (vm/runtime/asked_values.h).
+#include "vm/runtime/asked_values.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ uint32_t place_of(const ir::VerifiedImage& version, const std::string& path) {
 
 TEST(AskedValues, AreThoseOfTheNamesInTheirOrder) {
   const ir::VerifiedImage version = build(source_with(""));
-  stvm::AskedValues asked;
+  vm::AskedValues asked;
   for (const std::vector<std::string>& names :
        std::vector<std::vector<std::string>>{{"Main.a", "Main.c"},
                                              {"Main.c", "Main.a"},
@@ -46,7 +46,7 @@ TEST(AskedValues, AreLookedUpAnewInAnotherVersion) {
   const ir::VerifiedImage first = build(source_with(""));
   const ir::VerifiedImage second = build(source_with("row : ARRAY[1..9] OF LINT;"));
   ASSERT_NE(place_of(first, "Main.c"), place_of(second, "Main.c"));
-  stvm::AskedValues asked;
+  vm::AskedValues asked;
   for (const ir::VerifiedImage& version : {first, second, first}) {
     const auto request = asked.find(version, {"Main.c"});
     ASSERT_TRUE(request.ok());
@@ -58,7 +58,7 @@ TEST(AskedValues, AreLookedUpAnewInAnotherVersion) {
 // Another answer of the same place would be another look.
 TEST(AskedValues, AreKeptForTheLastRequests) {
   const ir::VerifiedImage version = build(source_with(""));
-  stvm::AskedValues asked;
+  vm::AskedValues asked;
   const auto variables_of = [&](const std::string& name) {
     return (*asked.find(version, {name}))->variables.data();
   };

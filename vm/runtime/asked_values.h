@@ -10,7 +10,7 @@
 #include "ir/bytecode/variable_names.h"
 #include "ir/bytecode/verify.h"
 
-namespace stvm {
+namespace vm {
 
 class AskedValues {
  public:
@@ -23,7 +23,7 @@ class AskedValues {
     std::vector<ir::DataRange> ranges;  // where their values are
   };
 
-  // Valid until the next call. kNoSuchVariable; kTooMany: they have more than vm::kMaxReadBytes.
+  // Valid until the next call. kNoSuchVariable; kTooMany: they have more than kMaxReadBytes.
   base::Result<const Request*> find(const ir::VerifiedImage& version,
                                     const std::vector<std::string>& names);
 
@@ -36,4 +36,4 @@ class AskedValues {
   std::vector<Kept> kept_;  // the last one that was asked for is the last
 };
 
-}  // namespace stvm
+}  // namespace vm

@@ -1,17 +1,17 @@
-#include "tools/stvm/asked_values.h"
+#include "vm/runtime/asked_values.h"
 
 #include <algorithm>
 
 #include "vm/runtime/live_copy.h"
 
-namespace stvm {
+namespace vm {
 namespace {
 
 // Several tools may watch. A request's size is bounded by that of a message.
 constexpr size_t kMostKept = 4;
 
 base::Error too_much(const std::string& name) {
-  return {base::Refusal::kTooMany, "one request reads " + std::to_string(vm::kMaxReadBytes) +
+  return {base::Refusal::kTooMany, "one request reads " + std::to_string(kMaxReadBytes) +
                                        " bytes of variables; with `" + name +
                                        "` it would be more: name fewer of them, or parts"};
 }
@@ -19,7 +19,7 @@ base::Error too_much(const std::string& name) {
 base::Result<AskedValues::Request> looked_up(const ir::VerifiedImage& version,
                                              const std::vector<std::string>& names) {
   AskedValues::Request out;
-  ir::ValueRanges ranges(version.image(), vm::kMaxReadBytes);
+  ir::ValueRanges ranges(version.image(), kMaxReadBytes);
   for (const std::string& name : names) {
     base::Result<ir::NamedSymbol> named = ir::named_symbol(version.names(), name);
     if (!named.ok()) return named.error();
@@ -49,4 +49,4 @@ base::Result<const AskedValues::Request*> AskedValues::find(const ir::VerifiedIm
   return &kept_.back().request;
 }
 
-}  // namespace stvm
+}  // namespace vm
