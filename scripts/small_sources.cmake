@@ -50,6 +50,8 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/vm/native/print.cc ${CMAKE_SOURCE_DIR}/vm/exec/describe.cc
      ${CMAKE_SOURCE_DIR}/vm/load/forced_code.cc ${CMAKE_SOURCE_DIR}/vm/load/origins.cc
      ${CMAKE_SOURCE_DIR}/vm/load/write*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/symbols.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/leaf_walk.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/name_index.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/asked_values.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/values.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_versions.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_resources.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_migrations.cc

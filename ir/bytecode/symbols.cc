@@ -30,22 +30,26 @@ std::string byte_of_bit(const Type& owner, std::string_view name) {
   return {};
 }
 
-// The same questions asked of the tables themselves, one row after the other.
-class Tables {
+// Names are looked up in the index, or without one in the tables themselves, row by row.
+class Names {
  public:
-  explicit Tables(const Image& image) : image_(image) {}
+  Names(const Image& image, const NameIndex* index) : image_(image), index_(index) {}
 
   const Image& image() const { return image_; }
   int32_t find_member(TypeId type, std::string_view name) const {
-    return image_.types.find_member(type, name);
+    return index_ != nullptr ? index_->find_member(type, name)
+                             : image_.types.find_member(type, name);
   }
   std::optional<SharedMember> find_shared(std::string_view name) const {
-    return ir::find_shared(image_.types, image_.globals, name);
+    return index_ != nullptr ? index_->find_shared(name)
+                             : ir::find_shared(image_.types, image_.globals, name);
   }
   std::string_view listed_name(std::string_view path) const {
-    return ir::listed_name(image_.types, image_.globals, path);
+    return index_ != nullptr ? index_->listed_name(path)
+                             : ir::listed_name(image_.types, image_.globals, path);
   }
   uint32_t find_program(std::string_view name) const {
+    if (index_ != nullptr) return index_->find_program(name);
     for (uint32_t id = 1; id < image_.instances.size(); ++id) {
       const Instance& row = image_.instances[id];
       const bool program = row.live && image_.types.is_instance(row.type) &&
@@ -56,6 +60,7 @@ class Tables {
   }
   // VAR_ACCESS: another name for a variable, or for what its members begin with.
   const AccessPath* access_path(std::string_view path) const {
+    if (index_ != nullptr) return index_->access_path(path);
     for (const AccessPath& access : image_.access) {  // `Main.x`, too: another name for one place
       const size_t size = access.name.size();
       const bool ends =
@@ -67,10 +72,10 @@ class Tables {
 
  private:
   const Image& image_;
+  const NameIndex* index_;
 };
 
-// Reads a path from left to right. `Names`: Tables, or a NameIndex.
-template <typename Names>
+// Reads a path from left to right.
 class PathReader {
  public:
   PathReader(const Names& names, std::string_view path)
@@ -216,7 +221,6 @@ class PathReader {
   size_t at_ = 0;
 };
 
-template <typename Names>
 base::Result<Symbol> find_by(const Names& names, std::string_view path) {
   const AccessPath* const access = names.access_path(path);
   if (access == nullptr) return PathReader(names, path).run();
@@ -229,11 +233,11 @@ base::Result<Symbol> find_by(const Names& names, std::string_view path) {
 }  // namespace
 
 base::Result<Symbol> find_symbol(const Image& image, std::string_view path) {
-  return find_by(Tables(image), path);
+  return find_by({image, nullptr}, path);
 }
 
 base::Result<Symbol> find_symbol(const NameIndex& names, std::string_view path) {
-  return find_by(names, path);
+  return find_by({names.image(), &names}, path);
 }
 
 std::string type_text(const Image& image, const Symbol& symbol) {

@@ -1,14 +1,9 @@
 #include "vm/runtime/asked_values.h"
 
-#include <algorithm>
-
 #include "vm/runtime/live_copy.h"
 
 namespace vm {
 namespace {
-
-// Several tools may watch. A request's size is bounded by that of a message.
-constexpr size_t kMostKept = 4;
 
 base::Error too_much(const std::string& name) {
   return {base::Refusal::kTooMany, "one request reads " + std::to_string(kMaxReadBytes) +
@@ -35,18 +30,16 @@ base::Result<AskedValues::Request> looked_up(const ir::VerifiedImage& version,
 
 base::Result<const AskedValues::Request*> AskedValues::find(const ir::VerifiedImage& version,
                                                             const std::vector<std::string>& names) {
-  const auto again = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
-    return kept.version == version.digest() && kept.names == names;
-  });
-  if (again != kept_.end()) {
-    std::rotate(again, again + 1, kept_.end());
-    return &kept_.back().request;
+  for (const Kept& kept : kept_) {
+    if (kept.version == version.digest() && kept.names == names) return &kept.request;
   }
   base::Result<Request> request = looked_up(version, names);
   if (!request.ok()) return request.error();
-  if (kept_.size() == kMostKept) kept_.erase(kept_.begin());
-  kept_.push_back({version.digest(), names, std::move(*request)});
-  return &kept_.back().request;
+  Kept& kept = kept_[oldest_++ % kMostKept];
+  kept.version = version.digest();
+  kept.names = names;
+  kept.request = std::move(*request);
+  return &kept.request;
 }
 
 }  // namespace vm

@@ -33,7 +33,9 @@ class AskedValues {
     std::vector<std::string> names;
     Request request;
   };
-  std::vector<Kept> kept_;  // the last one that was asked for is the last
+  static constexpr size_t kMostKept = 4;  // several tools may watch
+  Kept kept_[kMostKept];                  // a request's size is bounded by that of a message
+  size_t oldest_ = 0;
 };
 
 }  // namespace vm

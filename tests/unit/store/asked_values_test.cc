@@ -55,18 +55,20 @@ TEST(AskedValues, AreLookedUpAnewInAnotherVersion) {
   }
 }
 
-// Another answer of the same place would be another look.
+// Those of several requests are there at once, and come again.
 TEST(AskedValues, AreKeptForTheLastRequests) {
   const ir::VerifiedImage version = build(source_with(""));
   vm::AskedValues asked;
   const auto variables_of = [&](const std::string& name) {
     return (*asked.find(version, {name}))->variables.data();
   };
-  const auto* const kept = variables_of("Main.a");
-  EXPECT_EQ(variables_of("Main.a"), kept);
-  variables_of("Main.b");
-  variables_of("Main.c");
-  EXPECT_EQ(variables_of("Main.a"), kept);
+  const auto* const a = variables_of("Main.a");
+  const auto* const b = variables_of("Main.b");
+  const auto* const c = variables_of("Main.c");
+  EXPECT_TRUE(a != b && b != c && c != a);
+  EXPECT_EQ(variables_of("Main.c"), c);
+  EXPECT_EQ(variables_of("Main.b"), b);
+  EXPECT_EQ(variables_of("Main.a"), a);
 }
 
 }  // namespace
