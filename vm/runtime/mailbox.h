@@ -20,8 +20,8 @@ class Mailbox : public Boundary {
 
   // Control thread, at a boundary.
   void serve();
-  // Control thread, in its idle time: at most until then, or so long, until a job is there. One
-  // system call, whose end no work between a look at the clock and the call moves.
+  // Control thread, in its idle time: sleeps until a job is there, or until that time, or so long.
+  // The time is absolute: what delays the call itself does not move the end.
   void wait_until(const RealClock& clock, int64_t at_ns);
   void wait(int64_t ns);
   // Control thread, when it ends: no job is taken any more.
