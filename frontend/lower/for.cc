@@ -16,7 +16,7 @@ struct ForCode::ForLoop {
   ir::Scalar bound = ir::Scalar::kI16;  // what `to` is compared in: the variable's, or DINT
   std::optional<Wide> constant_to;
   std::optional<Wide> constant_step;
-  ir::ValueId step;  // otherwise; signed, as wide as the variable
+  ir::ValueId step;  // otherwise; as wide as the variable, signed unless both have no sign
   ir::ValueId upwards;
 };
 
@@ -33,6 +33,11 @@ ir::Kind signed_kind(ir::Scalar machine) {
     default:
       return ir::Kind::kLint;
   }
+}
+
+bool is_unsigned(const ir::TypeTable& types, ir::TypeId type) {
+  const Traits traits = traits_of(types, type);
+  return (traits.integer || traits.bits) && !ir::is_signed(types.scalar(type));
 }
 
 }  // namespace
@@ -118,7 +123,10 @@ void ForCode::for_step(const Stmt& stmt, ForLoop& loop) {
     return;
   }
   loop.constant_step.reset();
-  ir::TypeId type = elementary(signed_kind(loop.machine));
+  // A step without a sign counts upwards, where the variable has none either: UINT BY UINT.
+  const bool unsigned_step = !ir::is_signed(loop.machine) && note.width != Width::kWide &&
+                             is_unsigned(types(), note.type);
+  const ir::TypeId type = unsigned_step ? loop.type : elementary(signed_kind(loop.machine));
   ir::Scalar machine = scalar(type);
   loop.step = build_.check_step(machine, value(stmt.by, type));
   ir::ValueId none = build_.constant(machine, 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/check.h"
 #include "ir/bytecode/image.h"
 #include "vm/native/facts.h"
 #include "vm/native/recipes.h"
@@ -257,6 +258,7 @@ class Inliner {
   Val mapped(Val v) const { return v == kNone ? kNone : value_of_[v]; }
 
   uint32_t node(Node n, uint32_t exits) {
+    base::check(n.op != Op::kHelper, "a body asks no handler");
     for (Val& v : n.in) v = mapped(v);
     n.mem.index = mapped(n.mem.index);
     if (n.mem.base == MemBase::kFrame) n.mem.disp += step_;
@@ -308,7 +310,7 @@ bool is_small(const ir::LinkedPou& pou, std::span<const ir::Unit> code) {
         (row.b.kind == ir::FieldKind::kBase && unit.base_b() == ir::Base::kConst) ||
         (row.c.kind == ir::FieldKind::kBase && unit.base_c() == ir::Base::kConst);
     const bool narrow_rotation = shape == Shape::kShift && recipe_of(op).width < 4;
-    if (constant_place || narrow_rotation) return false;  // they may need a helper
+    if (constant_place || narrow_rotation) return false;  // they may need a handler
     if (row.extended) ++i;
   }
   return true;

@@ -1,5 +1,7 @@
 #include "vm/native/make_function.h"
 
+#include <algorithm>
+
 #include "ir/bytecode/bools.h"
 #include "vm/native/build.h"
 #include "vm/native/forward.h"
@@ -17,6 +19,13 @@ bool is_interpreted_at_random(const TierOptions& options, uint32_t pou) {
 }
 
 namespace {
+
+// Handlers know the frame of a POU that was called, not that of a body in its caller: they would
+// find the values of neither.
+bool asks_a_handler(const Function& function) {
+  return std::any_of(function.nodes.begin(), function.nodes.end(),
+                     [](const Node& node) { return node.op == Op::kHelper; });
+}
 
 // What stands in the place of calls needs nothing else, and there are many of them.
 void keep_for_calls(Function& function) {
@@ -39,8 +48,10 @@ const Body* Bodies::body(uint32_t pou, uint32_t caller) {
     if (is_small(image_.pous[pou], common_.code_of(image_, image_.pous[pou]))) {
       base::Result<Facts> facts = Facts::of(image_, common_, image_.pous[pou]);
       if (facts.ok()) {
+        Function function = Builder(*facts).run();
+        if (asks_a_handler(function)) return nullptr;
         state.body = std::make_unique<Body>();
-        state.body->function = Builder(*facts).run();
+        state.body->function = std::move(function);
         state.body->effects = effects_of(state.body->function);
         keep_for_calls(state.body->function);
       }

@@ -161,6 +161,8 @@ void Collection::forward_declare(const TypeDecl& decl, std::string_view name) {
 void Collection::collect_enumerators(SpecId spec, ScopeId scope, Access access) {
   if (!spec.valid()) return;
   const Spec& content = sema_.tree[spec];
+  if (content.kind == SpecKind::kArray) collect_enumerators(content.element, scope, access);
+  for (const VarDecl& member : content.fields) collect_enumerators(member.spec, scope, access);
   for (uint32_t i = 0; i < content.enumerators.size(); ++i) {
     const Name& name = content.enumerators[i].name;
     sema_.declared.literals[sema_.namespaces.declare(NameSort::kLiteral, scope, name, access)]

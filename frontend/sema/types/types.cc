@@ -38,6 +38,7 @@ TypeUse Types::resolve_type(SpecId id) {
   // The default may name the type itself: Colour : (Red, Green) := Green.
   info.progress = Progress::kDone;
   if (use.type.valid() && info.default_value.valid()) {
+    if (spec.kind == SpecKind::kEnum) know_own_literal(info.default_value, use.type);
     info.use.init = ask<Constants>().initial_value(info.default_value, use.type, use.init);
     if (spec.kind == SpecKind::kEnum) sema_.program.types.edit(use.type).init = info.use.init;
   }
@@ -220,6 +221,21 @@ TypeUse Types::resolve_subrange(const Spec& spec) {
               {}};
   if (from > 0 || to < 0) use.init = sema_.program.constants.scalar(static_cast<uint64_t>(from));
   return use;
+}
+
+// In the default of an enumeration its own literals are known first, also those that
+// {attribute 'qualified_only'} keeps from everybody else.
+void Types::know_own_literal(ExprId default_value, ir::TypeId type) {
+  const Expr& expr = sema_.tree[default_value];
+  const bool own = expr.kind == ExprKind::kName && !expr.global &&
+                   sema_.declared.find_literal(type, expr.name.text) >= 0;
+  if (!own) return;
+  Note note;
+  note.type = type;
+  note.constant = true;
+  note.known = Known::kConstant;
+  note.progress = Progress::kDone;
+  sema_.facts.of(scope_, default_value) = note;
 }
 
 TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {

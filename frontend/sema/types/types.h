@@ -25,6 +25,7 @@ class Types : public Phase {
   TypeUse resolve_struct(SpecId id, const Spec& spec);
   TypeUse resolve_subrange(const Spec& spec);
   TypeUse resolve_enum(SpecId id, const Spec& spec);
+  void know_own_literal(ExprId default_value, ir::TypeId type);
   TypeUse resolve_reference(const Spec& spec);
   bool check_overlap(const ir::Type& type, base::SourceSpan span);
   bool add_base(StructBuild& build, const Spec& spec);
