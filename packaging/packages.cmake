@@ -8,9 +8,12 @@ set(docs ${CMAKE_INSTALL_DATAROOTDIR}/doc)
 # Who goes through a fleet has the compiler, and controllers have neither.
 install(TARGETS stc stvm-fleet RUNTIME COMPONENT stc)
 install(TARGETS stvm RUNTIME COMPONENT stvm)
+# A controller that no broker leads to needs no libmosquitto.
+install(TARGETS stvm-agent RUNTIME COMPONENT stvm-agent)
+install(FILES packaging/debian/copyright DESTINATION ${docs}/stvm-agent COMPONENT stvm-agent)
 install(FILES packaging/debian/copyright DESTINATION ${docs}/stc COMPONENT stc)
 install(FILES packaging/debian/copyright DESTINATION ${docs}/stvm COMPONENT stvm)
-foreach(package stc stvm)
+foreach(package stc stvm stvm-agent)
   set(changelog ${CMAKE_BINARY_DIR}/generated/packages/${package}/changelog)
   file(CONFIGURE OUTPUT ${changelog} CONTENT "${package} (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium
 
@@ -60,7 +63,7 @@ set(CPACK_PACKAGE_NAME stc)
 set(CPACK_PACKAGE_VENDOR stc)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL stc stvm)
+set(CPACK_COMPONENTS_ALL stc stvm stvm-agent)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -70,6 +73,8 @@ set(CPACK_DEBIAN_STC_PACKAGE_NAME stc)
 set(CPACK_DEBIAN_STVM_PACKAGE_NAME stvm)
 set(CPACK_DEBIAN_STVM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/postinst)
 set(CPACK_DEBIAN_STVM_PACKAGE_DEPENDS systemd)
+set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_NAME stvm-agent)
+set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_DEPENDS "stvm (= ${CPACK_PACKAGE_VERSION})")
 set(CPACK_DEBIAN_STC_DESCRIPTION "compiler of IEC 61131-3 programs
 Structured Text, ladder, function block diagrams, charts and instruction
 lists become an image for stvm, a soft PLC whose running program can be
@@ -78,4 +83,8 @@ set(CPACK_DEBIAN_STVM_DESCRIPTION "soft PLC whose running program can be changed
 Runs images of stc scan by scan. A changed program is brought to the
 running one between two scans: variables keep their values, and the change
 can be undone.")
+set(CPACK_DEBIAN_STVM-AGENT_DESCRIPTION "connects a controller of stvm to a broker
+`stvm agent` keeps one TLS connection to a broker of MQTT, says there what
+its controller is and has, and carries out orders that a trusted key has
+signed: edits go on trial, become final, or go again.")
 include(CPack)

@@ -17,6 +17,8 @@ need python3 python3
 need mbpoll mbpoll
 [ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
 [ -e /usr/include/openssl/evp.h ] || missing="$missing libssl-dev"
+[ -e /usr/include/mosquitto.h ] || missing="$missing libmosquitto-dev"
+[ -x /usr/sbin/mosquitto ] || need mosquitto mosquitto
 for package in "$@"; do  # extra packages of one make target
   dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
 done

@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kSignedVersion = 1;
 constexpr const char* kKindNames[kSignedKinds] = {"image", "package", "fleet file",
-                                                  "list of revoked keys"};
+                                                  "list of revoked keys", "order to an agent"};
 
 base::Error bad_signed(const std::string& text) {
   return {base::Refusal::kBadFormat, "signed file: " + text};
@@ -65,6 +65,8 @@ base::Result<Statement> read_statement(base::ByteSpan bytes) {
 const char* signed_kind_name(SignedKind kind) { return kKindNames[static_cast<size_t>(kind)]; }
 
 bool has_signed_magic(base::ByteSpan bytes) { return begins_with(bytes, kSignedMagic); }
+
+bool has_order_magic(base::ByteSpan bytes) { return begins_with(bytes, kOrderMagic); }
 
 base::Digest key_id(const PublicKey& key) { return base::sha256(key); }
 

@@ -1,8 +1,8 @@
-// A signed file (F-03): an image, a package, a fleet file or a list of revoked keys, wrapped byte
-// for byte, with a statement in front of it that a key has signed. The statement says what the
-// content is, for whom, until when, and where in a plan it stands; its hash binds the content.
-// Nothing here checks a signature: who knows keys does (tools/stvm/key_trust.h), by the adapter
-// adapters/keys.
+// A signed file (F-03): an image, a package, a fleet file, a list of revoked keys or an order to an
+// agent, wrapped byte for byte, with a statement in front of it that a key has signed. It says
+// what the content is, for whom, until when, and where in a plan it stands; its hash binds the
+// content. Nothing here checks a signature: who knows keys does (tools/stvm/key_trust.h), by the
+// adapter adapters/keys.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ using VerifySignature = bool (*)(const PublicKey& key, base::ByteSpan message,
                                  const Signature& signature);
 
 // Numbers are in files.
-enum class SignedKind : uint8_t { kImage = 0, kPackage = 1, kFleet = 2, kRevoked = 3 };
-inline constexpr uint32_t kSignedKinds = 4;
+enum class SignedKind : uint8_t { kImage = 0, kPackage = 1, kFleet = 2, kRevoked = 3, kOrder = 4 };
+inline constexpr uint32_t kSignedKinds = 5;
 const char* signed_kind_name(SignedKind kind);  // "image"
 
 inline constexpr size_t kMostSignedName = 64;  // bytes of a plan or target
@@ -48,8 +48,10 @@ struct SignedFile {
 
 inline constexpr std::string_view kSignedMagic = "STCSIGND";
 inline constexpr std::string_view kRevokedMagic = "STCREVOK";
+inline constexpr std::string_view kOrderMagic = "STCORDER";  // tools/stvm/agent_order.h
 inline constexpr size_t kSignedKindAt = kSignedMagic.size() + 8;  // in the file
 bool has_signed_magic(base::ByteSpan bytes);
+bool has_order_magic(base::ByteSpan bytes);
 
 base::Digest key_id(const PublicKey& key);
 // One to 64 bytes of letters, digits and . _ - : / only; they are printed and compared.

@@ -129,6 +129,7 @@ base::Result<SignedKind> kind_of(base::ByteSpan content) {
   if (ir::has_image_magic(content)) return SignedKind::kImage;
   if (online_change::has_fleet_magic(content)) return SignedKind::kFleet;
   if (online_change::decode_revoked(content).ok()) return SignedKind::kRevoked;
+  if (online_change::has_order_magic(content)) return SignedKind::kOrder;
   if (online_change::has_package_magic(content)) return SignedKind::kPackage;
   return base::Error{base::Refusal::kBadFormat,
                      "neither an image nor a package nor a fleet file: it cannot be signed"};

@@ -1,9 +1,14 @@
 // stvm fleet: one edit and many controllers (E-27 to E-32). A run is a verb, who is visited, and a
 // table of what came out.
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
 #include "tools/common/exit.h"
+#include "tools/common/files.h"
+#include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/fleet_command.h"
 #include "tools/stvm/fleet_left.h"
 #include "tools/stvm/fleet_matrix.h"
@@ -11,6 +16,7 @@
 #include "tools/stvm/fleet_visit.h"
 #include "tools/stvm/fleet_walk.h"
 #include "tools/stvm/question.h"
+#include "vm/runtime/socket_peer.h"
 
 namespace stvm {
 namespace {
@@ -21,9 +27,11 @@ struct FleetRun {
   SwitchOptions how;
   bool json = false;
   bool all = false;
+  uint32_t patience_s = vm::SocketClient::kPatienceSeconds;
   FleetWalk walk;
   FleetAccess access;
   std::vector<FleetMember> members;
+  std::string broker;  // the table that leads to some of them
 };
 
 base::Error fleet_usage(std::string text) { return {base::Refusal::kUsage, "fleet: " + text}; }
@@ -60,6 +68,30 @@ base::Status find_members(const tools::Options& options, FleetRun& run) {
                            : fleet_usage("`" + run.verb + "` cannot be continued");
 }
 
+// Controllers of the file that a broker leads to.
+base::Status reach_broker(const tools::Options& options, ConnectBroker connect, FleetRun& run) {
+  if (std::none_of(run.members.begin(), run.members.end(), is_at_agent)) return base::Ok{};
+  FleetBrokerUse use;
+  use.connect = connect;
+  use.file = options.has("--fleet") ? options.text("--fleet")
+                                    : FleetLeft(run.edit.path, run.edit.digest).path();
+  base::Result<std::string> list = tools::read_text(use.file);
+  if (!list.ok()) return list.error();
+  use.list = std::move(*list);
+  base::Result<FleetBroker> broker = parse_broker(use.file, use.list);
+  if (!broker.ok()) return broker.error();
+  run.broker = broker_text(*broker);
+  use.key = run.how.sign;
+  use.plan = new_plan_id();
+  use.who = vm::user_name(::geteuid());
+  use.patience_s = run.patience_s;
+  if (use.key.empty() && changes(run.verb)) {
+    return base::Error{base::Refusal::kUnsigned,
+                       "agents carry out only what is signed: --sign KEY"};
+  }
+  return reach_agents(use, run.members, run.access);
+}
+
 base::Status check_walk(const FleetRun& run) {
   const bool several = run.walk.jobs > 1;
   if (several && run.walk.one_by_one)
@@ -89,12 +121,13 @@ base::Status read_options(const tools::Options& options, FleetRun& run) {
   run.all = run.how.all;
   run.how.json = run.json || *jobs > 1;  // what several say at once nobody could read
   run.walk.jobs = *jobs;
+  run.patience_s = *patience;
   run.walk.one_by_one = options.has("--one-by-one");
   run.access = fleet_access(*patience, run.edit.path, {run.how.restricted, run.edit.matching});
   return base::Ok{};
 }
 
-base::Result<FleetRun> read_run(const tools::Options& options) {
+base::Result<FleetRun> read_run(const tools::Options& options, ConnectBroker connect) {
   FleetRun run;
   run.verb = options.arguments()[0];
   const size_t more = options.arguments().size() - 1;
@@ -121,10 +154,14 @@ base::Result<FleetRun> read_run(const tools::Options& options) {
   if (base::Status read = read_options(options, run); !read.ok()) return read.error();
   if (base::Status found = find_members(options, run); !found.ok()) return found.error();
   if (base::Status fits = check_walk(run); !fits.ok()) return fits.error();
+  if (base::Status reached = reach_broker(options, connect, run); !reached.ok()) {
+    return reached.error();
+  }
   return run;
 }
 
 bool answers(const FleetAccess& access, const FleetMember& member) {
+  if (is_at_agent(member)) return access.agents->is_online(member);
   base::Result<ControllerClient> client = access.connect(member);
   return client.ok() && client->status().ok();
 }
@@ -150,6 +187,7 @@ void say_left(const FleetLeft& left, const FleetRun& run) {
 int go_through(FleetRun& run) {
   FleetLeft left(run.edit.path, run.edit.digest);
   const bool notes = !run.how.dry_run;
+  left.keep_broker(run.broker);
   if (notes) left.begin(run.verb, run.members);
   const std::unique_ptr<FleetVisit> verb = visit_of(run);
   run.walk.visit = [&](const FleetMember& member) { return verb->visit(member); };
@@ -210,7 +248,12 @@ int show_status(FleetRun& run) {
 FleetAccess fleet_access(uint32_t patience_s, const std::string& file,
                          const PackageOptions& made) {
   FleetAccess access;
-  access.connect = [patience_s](const FleetMember& member) {
+  access.connect = [patience_s](const FleetMember& member) -> base::Result<ControllerClient> {
+    if (is_at_agent(member)) {
+      return base::Error{base::Refusal::kUsage,
+                         member.name + " is reached over a broker only: change, undo, accept, "
+                                       "status, continue and roll-outs go there"};
+    }
     return is_at_folder(member) ? ControllerClient::connect_here(member.place, patience_s)
                                 : ControllerClient::connect_there(member.place, {}, patience_s);
   };
@@ -222,9 +265,9 @@ FleetAccess fleet_access(uint32_t patience_s, const std::string& file,
   return access;
 }
 
-int run_fleet(const tools::Options& options) {
-  if (is_roll_verb(options.arguments()[0])) return run_roll(options);
-  base::Result<FleetRun> run = read_run(options);
+int run_fleet(const tools::Options& options, ConnectBroker connect) {
+  if (is_roll_verb(options.arguments()[0])) return run_roll(options, connect);
+  base::Result<FleetRun> run = read_run(options, connect);
   if (!run.ok()) return refuse(run.error());
   if (run->verb == "diff") return compare_fleet(options, run->access);
   return run->verb == "status" ? show_status(*run) : go_through(*run);

@@ -1,6 +1,7 @@
 // stvm fleet change: the edit of a fleet file on one controller after the other (E-27 to E-31).
 #include <optional>
 
+#include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/fleet_edits.h"
 #include "tools/stvm/fleet_steps.h"
 #include "tools/stvm/fleet_visit.h"
@@ -16,6 +17,7 @@ FleetChange::FleetChange(const FleetEdit& edit, SwitchOptions how, FleetAccess a
 
 // With --wait again, until others are done: what they leave is checked anew.
 FleetRow FleetChange::visit(const FleetMember& member) {
+  if (is_at_agent(member)) return access_.agents->change(edit_, how_, talk_, member);
   for (;;) {
     FleetRow row = talk_.begin(member);
     if (talk_.is_over()) return row;

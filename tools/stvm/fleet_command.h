@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/stvm/commands.h"
+#include "tools/stvm/fleet_broker.h"
 
 namespace stvm {
 
@@ -10,6 +11,6 @@ namespace stvm {
 inline constexpr const char* kFleetProgram = "stvm-fleet";
 extern const tools::Command kFleetCommand;
 // What stvm-fleet does.
-int run_fleet(const tools::Options& options);
+int run_fleet(const tools::Options& options, ConnectBroker connect);
 
 }  // namespace stvm

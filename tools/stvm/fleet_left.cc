@@ -8,6 +8,7 @@
 #include "base/joined.h"
 #include "tools/common/files.h"
 #include "tools/common/json.h"
+#include "tools/stvm/fleet_broker.h"
 
 namespace stvm {
 namespace {
@@ -31,6 +32,7 @@ std::string toml_text(const std::string& text) {
 
 // A folder is meant wherever the next run begins.
 std::string place_text(const FleetMember& member) {
+  if (is_at_agent(member)) return "agent = " + toml_text(member.place);
   if (!is_at_folder(member)) return "host = " + toml_text(member.place);
   std::error_code error;
   const std::filesystem::path whole = std::filesystem::absolute(member.place, error);
@@ -60,6 +62,10 @@ void FleetLeft::begin(const std::string& verb, const std::vector<FleetMember>& m
   const base::Result<std::string> earlier = read(before);
   verb_ = verb;
   left_ = members;
+  if (broker_.empty() && earlier.ok()) {
+    const base::Result<FleetBroker> kept = read_broker(path_);
+    if (kept.ok()) broker_ = broker_text(*kept);
+  }
   for (FleetMember& member : before) {
     const bool again = std::any_of(members.begin(), members.end(),
                                    [&](const FleetMember& one) { return one.name == member.name; });
@@ -79,7 +85,7 @@ void FleetLeft::write() {
     (void)::unlink(path_.c_str());
     return;
   }
-  std::string text = base::joined({"# ", verb_, " ", base::to_hex(digest_), "\n"});
+  std::string text = base::joined({"# ", verb_, " ", base::to_hex(digest_), "\n", broker_});
   size_t number = 0;
   for (const FleetMember& member : left_) {
     text +=

@@ -17,6 +17,9 @@ class FleetLeft {
   FleetLeft(const std::string& fleet_file, const base::Digest& digest)
       : path_(fleet_file + ".left"), digest_(digest) {}
 
+  const std::string& path() const { return path_; }
+  // The table [broker] that leads to them (fleet_broker.h); before begin().
+  void keep_broker(std::string table) { broker_ = std::move(table); }
   // What a run has left: its verb, and who. kNothingToUndo where there is none, or it is of
   // another file.
   base::Result<std::string> read(std::vector<FleetMember>& members) const;
@@ -36,6 +39,7 @@ class FleetLeft {
   std::string verb_;
   std::vector<FleetMember> left_;
   std::string complaint_;
+  std::string broker_;
 };
 
 }  // namespace stvm

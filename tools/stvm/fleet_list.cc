@@ -5,6 +5,8 @@
 
 #include "tools/common/files.h"
 #include "tools/common/toml.h"
+#include "tools/stvm/agent_answer.h"
+#include "tools/stvm/fleet_broker.h"
 #include "tools/stvm/fleet_waves.h"
 
 namespace stvm {
@@ -26,7 +28,7 @@ class FleetList {
     const base::Result<tools::TomlTable> table = tools::parse_toml(file_, text);
     if (!table.ok()) return table.error();
     for (const auto& [key, value] : *table) {
-      if (is_roll_key(key)) continue;  // of a roll-out (fleet_waves.h)
+      if (is_roll_key(key) || is_broker_key(key)) continue;
       if (base::Status taken = take(key, value); !taken.ok()) return taken.error();
     }
     std::vector<Listed> rows;
@@ -36,7 +38,8 @@ class FleetList {
     std::vector<FleetMember> members;
     for (Listed& row : rows) {
       if (row.member.place.empty()) {
-        return mistake(row.line, row.column, "`" + row.member.name + "` has no `dir` or `host`");
+        return mistake(row.line, row.column,
+                       "`" + row.member.name + "` has no `dir`, `host` or `agent`");
       }
       members.push_back(std::move(row.member));
     }
@@ -66,13 +69,14 @@ class FleetList {
     if (row.member.name.empty()) row.member.name = name;
     if (setting == "name") return take_text(value, row.member.name);
     if (setting == "allow_loss") return take_flag(value, row.member.allow_loss);
+    if (setting == "agent") return take_agent(value, row.member);
     if (setting == "dir" || setting == "host") {
       const bool folder = setting == "dir";
       return take_place(value, folder ? PlaceKind::kFolder : PlaceKind::kHost, row.member);
     }
     return mistake(
         value.line, value.column,
-        "`" + setting + "` is not known; a controller has dir or host, name and allow_loss");
+        "`" + setting + "` is not known; a controller has dir, host or agent, name and allow_loss");
   }
 
   base::Status take_flag(const tools::TomlValue& value, bool& flag) const {
@@ -96,10 +100,18 @@ class FleetList {
   base::Status take_place(const tools::TomlValue& value, PlaceKind kind,
                           FleetMember& member) const {
     if (!member.place.empty()) {
-      return mistake(value.line, value.column, "`" + member.name + "` has a dir and a host");
+      return mistake(value.line, value.column,
+                     "`" + member.name + "` has two of dir, host and agent");
     }
     member.kind = kind;
     return take_text(value, member.place);
+  }
+
+  base::Status take_agent(const tools::TomlValue& value, FleetMember& member) const {
+    base::Status taken = take_place(value, PlaceKind::kAtAgent, member);
+    if (!taken.ok() || is_agent_name(member.place)) return taken;
+    return mistake(value.place.line, value.place.column,
+                   "a name of letters, digits and . _ - is wanted, as in the trust file there");
   }
 
   std::string file_;
@@ -112,6 +124,8 @@ bool is_at_folder(const FleetMember& member) {
   if (member.kind == PlaceKind::kEither) return tools::is_folder(member.place);
   return member.kind == PlaceKind::kFolder;
 }
+
+bool is_at_agent(const FleetMember& member) { return member.kind == PlaceKind::kAtAgent; }
 
 base::Result<std::vector<FleetMember>> read_fleet_list(const std::string& file) {
   base::Result<base::Bytes> bytes = tools::read_bytes(file);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/joined.h"
+#include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/fleet_edits.h"
 #include "tools/stvm/fleet_walk.h"
 
@@ -33,6 +34,7 @@ SwitchOptions FleetRoll::how(size_t member) const {
   how.ask = false;
   how.json = true;
   how.note = base::joined({fleet_note(edit_.digest), ", ", note(wave)});
+  how.wave = static_cast<uint32_t>(wave + 1);
   GuardOrder order = plan_.settings.guard;
   order.note = note(wave);
   order.deadline_ns = plan_.settings.waves[wave].deadline_ms * 1'000'000;
@@ -68,52 +70,15 @@ std::vector<FleetRow> FleetRoll::check_all() const {
 
 // What the journal says of this plan, and what is on trial.
 FleetRoll::Found FleetRoll::look(size_t member) const {
-  Found found;
   const RollMember& row = plan_.members[member];
+  if (is_at_agent(row.member)) return access_.agents->look(row.member, plan_.id);
   base::Result<ControllerClient> client = access_.connect(row.member);
-  if (!client.ok()) return found;
-  base::Result<vm::StatusReport> status = client->status();
-  if (!status.ok()) return found;
-  const std::string noted = "plan " + plan_.id + " wave ";
-  for (std::string& alarm : status->alarms) {
-    if (alarm.find(noted) != std::string::npos) found.alarm = std::move(alarm);
-  }
-  const auto edits = client->edits();
-  if (!edits.ok()) return found;
-  const auto is_it = [&](const TrialEdit& one) {
-    return !one.undone && one.name == row.edit && one.from == row.from && one.to == row.to;
-  };
-  found.answers = true;
-  if (!row.edit.empty() && std::any_of(edits->begin(), edits->end(), is_it)) {
-    found.on_trial = found.switched = true;
-    return found;
-  }
-  const auto journal = client->journal();
-  found.answers = journal.ok();
-  if (!journal.ok()) return found;
-  using online_change::Event;
-  for (const online_change::JournalEntry& entry : *journal) {
-    const bool back = entry.text.find(", " + std::string(kBackNote)) != std::string::npos;
-    const bool ours = !back && entry.text.find(noted) != std::string::npos;
-    if (ours && entry.event == Event::kSwitched) {
-      found.switched = true;
-      found.accepted = false;
-      found.edit = entry.text.substr(5, entry.text.find(',') - 5);  // behind "edit "
-      found.from = entry.from;
-      found.to = entry.to;
-      found.text.clear();
-      continue;
-    }
-    if (!found.switched) continue;
-    if (entry.event == Event::kAccepted && entry.to == found.to) found.accepted = true;
-    if (entry.event == Event::kUndone && entry.from == found.to) found.text = entry.text;
-  }
-  found.on_trial =
-      found.switched && std::any_of(edits->begin(), edits->end(), [&](const TrialEdit& one) {
-        return !one.undone && one.name == found.edit && one.from == found.from &&
-               one.to == found.to;
-      });
-  return found;
+  if (!client.ok()) return {};
+  Found known;
+  known.edit = row.edit;
+  known.from = row.from;
+  known.to = row.to;
+  return find_plan(*client, plan_.id, known);
 }
 
 bool FleetRoll::save() {
@@ -133,6 +98,10 @@ bool FleetRoll::decide(size_t member, RollState state, const std::string& text) 
   if (!save()) return false;
   ports_.say(base::joined(
       {row.member.name, ": ", roll_state_name(state), text.empty() ? "" : ": ", text, "\n"}));
+  // What waits for it at a broker must not begin later.
+  if (state == RollState::kLost && is_at_agent(row.member)) {
+    access_.agents->withdraw(edit_, how(member), row.member);
+  }
   return true;
 }
 

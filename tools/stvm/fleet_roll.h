@@ -10,11 +10,9 @@
 
 #include "tools/stvm/fleet_plan.h"
 #include "tools/stvm/fleet_visit.h"
+#include "tools/stvm/plan_trace.h"
 
 namespace stvm {
-
-// The journal says so of a switch that takes back what was accepted.
-inline constexpr const char* kBackNote = "back, ";
 
 // The world around a roll-out.
 struct RollPorts {
@@ -45,17 +43,7 @@ class FleetRoll {
   base::Status abort();
 
  private:
-  struct Found {  // on a controller
-    bool answers = false;
-    bool on_trial = false;
-    bool switched = false;  // by this plan, at some time
-    bool accepted = false;
-    std::string edit;
-    base::Digest from{};
-    base::Digest to{};
-    std::string text;   // of what became of it
-    std::string alarm;  // it is sick, and could not take the edit back
-  };
+  using Found = PlanTrace;
   using Step = void (FleetRoll::*)(size_t);
 
   Found look(size_t member) const;

@@ -75,6 +75,10 @@ void FleetRoll::undo_accepted(size_t member) {
     const bool gone = why.refusal == base::Refusal::kNotRunning;
     decide(member, gone ? RollState::kLost : RollState::kStays, base::to_string(why));
   };
+  if (is_at_agent(row.member)) {
+    return stays({base::Refusal::kUsage,
+                  "what is accepted does not go back over a broker; `stvm revert` there"});
+  }
   base::Result<ControllerClient> client = access_.connect(row.member);
   if (!client.ok()) return stays(client.error());
   base::Result<vm::StatusReport> status = client->status();

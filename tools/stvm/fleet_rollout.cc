@@ -20,6 +20,7 @@
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/fleet_roll.h"
 #include "tools/stvm/question.h"
 #include "vm/runtime/descriptor.h"
@@ -40,6 +41,8 @@ int64_t wall_ms() {
       .count();
 }
 
+}  // namespace
+
 std::string new_plan_id() {
   uint32_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != sizeof number) {
@@ -49,6 +52,8 @@ std::string new_plan_id() {
   std::snprintf(text, sizeof text, "%08x", number);
   return text;
 }
+
+namespace {
 
 // One tool at a time works on a plan.
 base::Result<vm::Descriptor> hold_plan(const std::string& path) {
@@ -83,7 +88,36 @@ struct RollJob {
   bool json = false;
 };
 
-base::Status open_edit(RollJob& job, uint32_t patience_s) {
+base::Result<uint32_t> patience(const tools::Options& options) {
+  base::Result<uint64_t> given = options.number("--timeout", vm::SocketClient::kPatienceSeconds);
+  if (!given.ok()) return given.error();
+  if (*given >= 1 && *given <= 86'400) return static_cast<uint32_t>(*given);
+  return roll_usage("--timeout is between 1 and 86400");
+}
+
+// A plan has no key, so whoever goes on with it gives it again.
+base::Status reach_agents_of(RollJob& job, ConnectBroker connect, uint32_t patience_s) {
+  std::vector<FleetMember> members;
+  for (const RollMember& row : job.plan.members) members.push_back(row.member);
+  if (std::none_of(members.begin(), members.end(), is_at_agent)) return base::Ok{};
+  if (job.access.sign.empty()) {
+    return base::Error{base::Refusal::kUnsigned,
+                       "agents carry out only what is signed: --sign KEY"};
+  }
+  FleetBrokerUse use;
+  use.connect = connect;
+  use.file = job.path + " (fleet.toml)";
+  use.list = job.plan.list;
+  use.key = job.access.sign;
+  use.plan = job.plan.id;
+  use.who = job.plan.who;
+  use.patience_s = patience_s;
+  return reach_agents(use, members, job.access);
+}
+
+base::Status open_edit(RollJob& job, const tools::Options& options, ConnectBroker connect) {
+  base::Result<uint32_t> seconds = patience(options);
+  if (!seconds.ok()) return seconds.error();
   base::Result<FleetEdit> edit = read_fleet_edit(job.plan.file);
   if (!edit.ok()) return edit.error();
   if (edit->digest != job.plan.digest) {
@@ -98,15 +132,9 @@ base::Status open_edit(RollJob& job, uint32_t patience_s) {
   job.edit = std::move(*edit);
   job.edit.steps.clear();
   job.edit.matching = job.plan.matching;
-  job.access = fleet_access(patience_s, job.plan.file, {false, job.plan.matching});
-  return base::Ok{};
-}
-
-base::Result<uint32_t> patience(const tools::Options& options) {
-  base::Result<uint64_t> given = options.number("--timeout", vm::SocketClient::kPatienceSeconds);
-  if (!given.ok()) return given.error();
-  if (*given >= 1 && *given <= 86'400) return static_cast<uint32_t>(*given);
-  return roll_usage("--timeout is between 1 and 86400");
+  job.access = fleet_access(*seconds, job.plan.file, {false, job.plan.matching});
+  job.access.sign = options.text("--sign");
+  return reach_agents_of(job, connect, *seconds);
 }
 
 RollPorts ports_of(const RollJob& job) {
@@ -171,14 +199,12 @@ int carry_out(RollJob& job) {
   return finish_roll(job, roll.run());
 }
 
-base::Result<RollJob> read_new_job(const tools::Options& options) {
+base::Result<RollJob> read_new_job(const tools::Options& options, ConnectBroker connect) {
   if (options.arguments().size() != 2) return roll_usage("roll needs a fleet file");
   if (!options.has("--fleet") || options.has("--dir") || options.has("--host")) {
     return roll_usage("roll takes controllers and waves from --fleet FILE");
   }
   const std::string& file = options.arguments()[1];
-  base::Result<uint32_t> seconds = patience(options);
-  if (!seconds.ok()) return seconds.error();
   base::Status trusted = check_fleet_signature(file, options);
   if (!trusted.ok()) return trusted.error();
   base::Result<FleetEdit> edit = read_fleet_edit(file);
@@ -202,13 +228,14 @@ base::Result<RollJob> read_new_job(const tools::Options& options) {
   job.plan.confirm_each = options.has("--confirm-each-wave");
   job.ask = how->ask;
   job.json = how->json;
-  if (base::Status opened = open_edit(job, *seconds); !opened.ok()) return opened.error();
-  job.access.sign = options.text("--sign");
+  if (base::Status opened = open_edit(job, options, connect); !opened.ok()) {
+    return opened.error();
+  }
   return job;
 }
 
-int begin_roll(const tools::Options& options) {
-  base::Result<RollJob> read = read_new_job(options);
+int begin_roll(const tools::Options& options, ConnectBroker connect) {
+  base::Result<RollJob> read = read_new_job(options, connect);
   if (!read.ok()) return refuse(read.error());
   RollJob& job = *read;
   const bool dry = options.has("--dry-run");
@@ -251,7 +278,7 @@ base::Result<RollPlan> named_plan(const tools::Options& options) {
   return roll_usage(options.arguments()[0] + " needs the plan of a roll-out, x.fleet.plan");
 }
 
-base::Result<RollJob> read_old_job(const tools::Options& options) {
+base::Result<RollJob> read_old_job(const tools::Options& options, ConnectBroker connect) {
   RollJob job;
   base::Result<RollPlan> looked_at = named_plan(options);
   if (!looked_at.ok()) return looked_at.error();
@@ -264,23 +291,22 @@ base::Result<RollJob> read_old_job(const tools::Options& options) {
   job.plan = std::move(*plan);
   job.ask = !options.has("--yes");
   job.json = wants_json(options);
-  base::Result<uint32_t> seconds = patience(options);
-  if (!seconds.ok()) return seconds.error();
-  if (base::Status opened = open_edit(job, *seconds); !opened.ok()) return opened.error();
-  job.access.sign = options.text("--sign");
+  if (base::Status opened = open_edit(job, options, connect); !opened.ok()) {
+    return opened.error();
+  }
   return job;
 }
 
-int resume_roll(const tools::Options& options) {
-  base::Result<RollJob> job = read_old_job(options);
+int resume_roll(const tools::Options& options, ConnectBroker connect) {
+  base::Result<RollJob> job = read_old_job(options, connect);
   if (!job.ok()) return refuse(job.error());
   const bool asks = job->plan.confirm_each && job->ask;
   if (base::Status may = may_ask(*job); asks && !may.ok()) return refuse(may.error());
   return carry_out(*job);
 }
 
-int abort_roll(const tools::Options& options) {
-  base::Result<RollJob> job = read_old_job(options);
+int abort_roll(const tools::Options& options, ConnectBroker connect) {
+  base::Result<RollJob> job = read_old_job(options, connect);
   if (!job.ok()) return refuse(job.error());
   FleetRoll roll(job->plan, job->edit, job->access, ports_of(*job));
   base::Status ended = roll.abort();
@@ -289,7 +315,7 @@ int abort_roll(const tools::Options& options) {
 }
 
 // At a terminal a page that refreshes; else one page for each change of the plan.
-int watch_roll(const tools::Options& options) {
+int watch_roll(const tools::Options& options, ConnectBroker) {
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   std::string before;
   for (;;) {
@@ -311,7 +337,7 @@ int watch_roll(const tools::Options& options) {
 
 struct RollVerb {
   std::string_view name;
-  int (*run)(const tools::Options&);
+  int (*run)(const tools::Options&, ConnectBroker);
 };
 constexpr RollVerb kRollVerbs[] = {
     {"roll", begin_roll}, {"resume", resume_roll}, {"abort", abort_roll}, {"watch", watch_roll}};
@@ -323,9 +349,9 @@ bool is_roll_verb(const std::string& verb) {
                      [&](const RollVerb& one) { return one.name == verb; });
 }
 
-int run_roll(const tools::Options& options) {
+int run_roll(const tools::Options& options, ConnectBroker connect) {
   for (const RollVerb& one : kRollVerbs) {
-    if (one.name == options.arguments()[0]) return one.run(options);
+    if (one.name == options.arguments()[0]) return one.run(options, connect);
   }
   return refuse(roll_usage("there is no such verb"));
 }

@@ -3,6 +3,7 @@
 
 #include "base/joined.h"
 #include "tools/stvm/fate_view.h"
+#include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/fleet_edits.h"
 #include "tools/stvm/fleet_visit.h"
 #include "tools/stvm/waiting.h"
@@ -60,6 +61,9 @@ FleetUndo::FleetUndo(const FleetEdit& edit, SwitchOptions how, FleetAccess acces
 
 // Where it was made more than once (--matching), each of them, newest first.
 FleetRow FleetUndo::visit(const FleetMember& member) {
+  if (is_at_agent(member)) {
+    return access_.agents->decide(AgentAct::kTakeBack, edit_, how_, talk_, member);
+  }
   FleetRow row = talk_.begin(member);
   if (talk_.is_over()) return row;
   std::optional<FleetSeen> seen = see(access_, talk_, member, row);
@@ -102,6 +106,9 @@ FleetAccept::FleetAccept(const FleetEdit& edit, SwitchOptions how, FleetAccess a
 
 // What lies below becomes final too, and that of others only where somebody has said so.
 FleetRow FleetAccept::visit(const FleetMember& member) {
+  if (is_at_agent(member)) {
+    return access_.agents->decide(AgentAct::kMakeFinal, edit_, how_, talk_, member);
+  }
   FleetRow row = talk_.begin(member);
   if (talk_.is_over()) return row;
   std::optional<FleetSeen> seen = see(access_, talk_, member, row);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "tools/common/fleet_parts.h"
+#include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/question.h"
 #include "tools/stvm/waiting.h"
 
@@ -83,7 +84,14 @@ FleetRow FleetVisit::not_done(FleetRow row, const base::Result<Outcome>& outcome
 }
 
 base::Status check_parts(const FleetEdit& edit, const ir::VerifiedImage& image, FleetRow& row) {
-  row.parts = ir::part_edits(edit.parts.original, edit.parts.edited, ir::parts_of(image.image()));
+  row.table = tools::own_table_edits(edit.parts, image.image());
+  return check_parts(edit, ir::parts_of(image.image()),
+                     online_change::check_table(row.table, "its own table"), row);
+}
+
+base::Status check_parts(const FleetEdit& edit, const std::vector<ir::Part>& here,
+                         const base::Status& table, FleetRow& row) {
+  row.parts = ir::part_edits(edit.parts.original, edit.parts.edited, here);
   bool all = true;
   std::string others;
   for (const ir::PartEdit& part : row.parts) {
@@ -93,16 +101,15 @@ base::Status check_parts(const FleetEdit& edit, const ir::VerifiedImage& image, 
               std::string(tools::part_state_name(part.state));
   }
   row.outcome = all ? FleetOutcome::kHadIt : FleetOutcome::kPossible;
-  row.table = tools::own_table_edits(edit.parts, image.image());
-  base::Status kept = online_change::check_table(row.table, "its own table");
   const bool fit = others.empty() || edit.matching;
-  if (fit) return all ? base::Status(base::Ok{}) : kept;
-  if (!kept.ok()) others += "; " + kept.error().text;
+  if (fit) return all ? base::Status(base::Ok{}) : table;
+  if (!table.ok()) others += "; " + table.error().text;
   return base::Error{base::Refusal::kOtherPart, others};
 }
 
 FleetRow look_at(const FleetEdit* edit, const FleetAccess& access, const FleetTalk& talk,
                  const FleetMember& member) {
+  if (is_at_agent(member)) return access.agents->look_at(edit, talk, member);
   FleetRow row = talk.begin(member);
   std::optional<FleetSeen> seen = see(access, talk, member, row);
   if (!seen) return row;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "ir/bytecode/verify.h"
@@ -14,6 +15,8 @@
 
 namespace stvm {
 
+class FleetAgents;
+
 // How controllers are reached, and what makes a package of the edit for the program that runs on
 // one. Several threads call them.
 struct FleetAccess {
@@ -23,6 +26,8 @@ struct FleetAccess {
   // One edit of several on trial.
   std::function<decltype(take_out)> take_back = take_out;
   std::string sign = {};  // of a roll-out: SwitchOptions::sign
+  // Those that a broker leads to; null: there are none.
+  std::shared_ptr<FleetAgents> agents = {};
 };
 
 // What is said on the way, and the person at the terminal, who may be done with all of it. Quiet:
@@ -111,6 +116,9 @@ class FleetAccept : public FleetVisit {
 
 // E-11: what a controller has of the edit; nothing is changed. Ok, or why it cannot be changed.
 base::Status check_parts(const FleetEdit& edit, const ir::VerifiedImage& image, FleetRow& row);
+// The same of parts that are known without the image; `table`: what was found of its own table.
+base::Status check_parts(const FleetEdit& edit, const std::vector<ir::Part>& here,
+                         const base::Status& table, FleetRow& row);
 // E-32: of the edit, or, without one, all that it has.
 FleetRow look_at(const FleetEdit* edit, const FleetAccess& access, const FleetTalk& talk,
                  const FleetMember& member);

@@ -22,6 +22,7 @@ struct SwitchOptions {
   std::string note;           // what the journal says of it (E-33)
   base::Bytes guard = {};     // conditions of its trial, as vm::Command::kGuard has them; none
   int64_t window_ms = 0;      // so long the controller looks at values before the switch
+  uint32_t wave = 1;          // of a roll-out
   std::string taken_out;      // the edit whose work it takes back
   std::string sign = {};      // file of the key to sign it with; "": nobody signs it
   bool dry_run = false;

@@ -26,6 +26,7 @@ complete -c stvm -n __fish_use_subcommand -f -a fleet -d 'Makes the edit of a fl
 back (undo) or accepts it (accept), goes on with those left (continue), or says who has
 what of it (status) and what differs between them (diff). Brings it by waves (roll), goes
 on with that (resume), takes it back (abort), or shows it (watch).'
+complete -c stvm -n __fish_use_subcommand -f -a agent -d 'Connects a controller to a broker of MQTT, and does there what `stvm fleet` orders.'
 complete -c stvm -n __fish_use_subcommand -f -a source -d 'Brings back the sources that travel with the running program.'
 complete -c stvm -n __fish_use_subcommand -f -a image -d 'Writes the running program to a file.'
 complete -c stvm -n __fish_use_subcommand -f -a bridge -d 'Connects its standard streams to the controller (what --host runs there).'
@@ -35,7 +36,7 @@ complete -c stvm -n __fish_use_subcommand -f -a doctor -d 'Tells what this machi
 complete -c stvm -n __fish_use_subcommand -f -a revoke -d 'Brings a list of revoked keys (`stc key revoke`) to a controller.'
 complete -c stvm -n __fish_use_subcommand -f -a help -d 'Lists the commands, or the options of one.'
 complete -c stvm -n __fish_use_subcommand -f -a version -d 'Says version and commit, and what was built in.'
-complete -c stvm -n '__fish_seen_subcommand_from help' -f -a 'run bench serve status get set force unforce watch change edits undo redo revert accept abort stop restart journal events fleet source image bridge replay top doctor revoke help version'
+complete -c stvm -n '__fish_seen_subcommand_from help' -f -a 'run bench serve status get set force unforce watch change edits undo redo revert accept abort stop restart journal events fleet agent source image bridge replay top doctor revoke help version'
 complete -c stvm -n '__fish_seen_subcommand_from run' -l scans -x -d 'control cycles to run (default: all, or until stopped)'
 complete -c stvm -n '__fish_seen_subcommand_from run' -l virtual-time -d 'run as fast as possible, the same every time'
 complete -c stvm -n '__fish_seen_subcommand_from run' -l set -x -d 'write a variable before the first scan; repeatable'
@@ -275,6 +276,11 @@ complete -c stvm -n '__fish_seen_subcommand_from fleet' -l confirm-each-wave -d 
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l format -x -a 'text json' -d 'text (default) or json'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stvm -n '__fish_seen_subcommand_from fleet' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
+complete -c stvm -n '__fish_seen_subcommand_from agent' -l dir -x -a '(__fish_complete_directories)' -d 'state directory of the controller (default: $STVM_DIR, else .stvm)'
+complete -c stvm -n '__fish_seen_subcommand_from agent' -l broker -r -F -d 'the broker: [broker] of this file (docs/FLEET.md)'
+complete -c stvm -n '__fish_seen_subcommand_from agent' -l trust -x -d 'carry out only what a key of this file has signed (docs/KEYS.md)'
+complete -c stvm -n '__fish_seen_subcommand_from agent' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
+complete -c stvm -n '__fish_seen_subcommand_from agent' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
 complete -c stvm -n '__fish_seen_subcommand_from source' -l output -s o -x -a '(__fish_complete_directories)' -d 'write the sources into this folder; without it they are listed'
 complete -c stvm -n '__fish_seen_subcommand_from source' -l overwrite -d 'replace files there that differ'
 complete -c stvm -n '__fish_seen_subcommand_from source' -l dir -x -a '(__fish_complete_directories)' -d 'state directory of the controller (default: $STVM_DIR, else .stvm)'

@@ -1,0 +1,155 @@
+#!/bin/sh
+# F-01 to F-03: controllers that a broker leads to. Real agents and a real mosquitto over TLS, with
+# certificates of this test: identities and health are there, an edit goes out, is undone
+# and accepted; who is away gets it later; an agent is killed and the broker restarted; what the
+# wrong key has signed changes nothing.
+. "$(dirname "$0")/lib.sh"
+
+# A build without the library says so.
+printf '[broker]\nurl = "mqtts://localhost:1"\n[controllers.one]\nagent = "one"\n' >fleet.toml
+echo 'PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM' >a.st
+stc key new office -o office.key >keys.toml 2>/dev/null || {
+  echo "built without OpenSSL: agents need it; tests/cli/keys.sh shows the refusal"
+  exit 0
+}
+{ echo 'name = "one"'; cat keys.toml; } >one.toml
+expect 2 stvm agent --dir one
+said 'R0504: agent: it needs --broker FILE and --trust KEYS'
+expect 7 stvm agent --dir one --broker keys.toml --trust one.toml
+said 'keys.toml:1:1: error.R0506'
+expect 7 stvm agent --dir one --broker fleet.toml --trust keys.toml
+said 'R0427: keys.toml: an agent needs .name'
+printf '[broker]\nurl = "mqtt://elsewhere"\n' >plain.toml
+code=0
+"$bin/stvm" agent --dir one --broker plain.toml --trust one.toml >out 2>err || code=$?
+if grep -q 'R0411.*libmosquitto-dev' err; then
+  [ $code = 7 ] || fail "exit code $code"
+  expect 7 stvm fleet status --fleet fleet.toml
+  said 'R0411.*libmosquitto-dev'
+  echo "built without libmosquitto: refused, as it should be"
+  exit 0
+fi
+said 'R0504.*without TLS only a broker of this machine'
+broker_program=$(command -v mosquitto || ls /usr/sbin/mosquitto 2>/dev/null) || true
+if [ -z "$broker_program" ] || ! command -v openssl >/dev/null; then
+  echo "SKIPPED: no mosquitto or no openssl here (scripts/setup.sh installs them)"
+  exit 0
+fi
+
+# A CA, and the certificate of a broker on this machine.
+openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=test-ca \
+  -keyout ca.key -out ca.pem 2>/dev/null
+openssl req -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -subj /CN=localhost \
+  -keyout broker.key -out broker.csr 2>/dev/null
+echo 'subjectAltName = DNS:localhost' >san
+openssl x509 -req -in broker.csr -CA ca.pem -CAkey ca.key -CAcreateserial -days 2 -extfile san \
+  -out broker.pem 2>/dev/null
+openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=other \
+  -keyout other-ca.key -out other-ca.pem 2>/dev/null
+port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0))
+print(s.getsockname()[1])')
+cat >broker.conf <<CONF
+user $(id -un)
+listener $port 127.0.0.1
+certfile $work/broker.pem
+keyfile $work/broker.key
+allow_anonymous true
+persistence true
+persistence_location $work/
+autosave_interval 1
+autosave_on_changes true
+CONF
+start_broker() {
+  "$broker_program" -c broker.conf >>broker.log 2>&1 &
+  echo $! >broker.pid
+}
+start_broker
+
+# Two controllers with keys, and their agents.
+project() {  # project FILE STEP
+  cat >"$1" <<ST
+FUNCTION_BLOCK Filler VAR_OUTPUT n : LINT; END_VAR n := n + $2; END_FUNCTION_BLOCK
+PROGRAM Main VAR f : Filler; errors : DINT; END_VAR f(); IF f.n < 0 THEN errors := errors + 1;
+END_IF END_PROGRAM
+ST
+}
+project v1.st 1
+project v2.st 2
+stc build -q v1.st -o v1.img
+stc key sign v1.img --key office.key -o v1.signed
+stc fleet v1.st v2.st -o x.fleet 2>/dev/null
+broker_table() {
+  printf '[broker]\nurl = "mqtts://localhost:%s"\nca = "%s/%s"\nprefix = "plant/a"\n' "$port" \
+    "$work" "${1:-ca.pem}"
+}
+broker_table >broker.toml
+broker_table >fleet.toml
+start_agent() {
+  "$bin/stvm" agent --dir "$1" --broker "${2:-broker.toml}" --trust "$1.toml" >>"$1.agent.log" 2>&1 &
+  echo $! >"$1-agent.pid"
+}
+for name in one two; do
+  { echo "name = \"$name\""; cat keys.toml; } >$name.toml
+  serve $name --trust $name.toml v1.signed
+  start_agent $name
+  printf '[controllers.%s]\nagent = "%s"\n' $name $name >>fleet.toml
+done
+fleet() {
+  verb=$1
+  shift
+  "$bin/stvm" fleet "$verb" x.fleet --fleet fleet.toml --allow-overrun --timeout 600 "$@"
+}
+running() { "$bin/stvm" status --dir "$1" --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/'; }
+
+# F-01: what they are is there without asking them.
+wait_for '^two +Main|^two +v1|^two +[A-Za-z0-9]+ +reached' "$bin/stvm" fleet status --fleet fleet.toml
+expect 0 stvm fleet status x.fleet --fleet fleet.toml
+said 'Filler'
+old=$(running one)
+
+# F-03: unsigned, and signed by somebody else. Nothing happens there.
+expect 7 fleet change --yes
+said 'R0420: agents carry out only what is signed'
+stc key new stranger -o stranger.key >stranger.toml
+expect 7 fleet change --yes --sign stranger.key
+said 'R0422'
+[ "$(running one)$(running two)" = "$old$old" ] || fail "an order of a stranger was carried out"
+
+# F-02: the check, the change; again; undo, twice.
+expect 0 fleet change --dry-run --sign office.key
+said '^one +.*possible'
+[ "$(running one)" = "$old" ] || fail "a dry run changed it"
+expect 0 fleet change --yes --sign office.key
+said '^one .*done'
+said '^two .*done'
+expect 0 stvm journal --dir one
+said 'fleet file [0-9a-f]{12}, plan [0-9a-f]{8} wave 1 by .*signed by office'
+expect 0 fleet change --yes --sign office.key
+said '^one .*had it'
+expect 0 fleet undo --yes --sign office.key
+[ "$(running one)$(running two)" = "$old$old" ] || fail "it is not taken back"
+expect 0 fleet undo --yes --sign office.key
+
+# An agent is killed: its will says so. What is ordered waits, and it comes back to it.
+kill -9 "$(cat two-agent.pid)"
+wait_for '^two .*unreachable' "$bin/stvm" fleet status --fleet fleet.toml
+expect 1 fleet change --yes --sign office.key
+said '^one .*done'
+said 'R0404: its agent is not connected to the broker; the order waits for it'
+[ "$(running two)" = "$old" ] || fail "who ordered that?"
+# So does the broker, with all that it keeps.
+kill "$(cat broker.pid)" && wait "$(cat broker.pid)" || true
+start_broker
+start_agent two
+wait_for '"edits":1' "$bin/stvm" status --dir two --format json
+wait_for '^two .*had it' fleet change --yes --sign office.key
+[ ! -e x.fleet.left ] || fail "somebody is left"
+expect 0 fleet accept --yes --sign office.key
+said '^two .*accepted'
+new=$(running two)
+
+# A broker with another certificate is no broker.
+broker_table other-ca.pem >other.toml
+cat fleet.toml | sed 's/ca.pem/other-ca.pem/' >other-fleet.toml
+expect 7 stvm fleet status --fleet other-fleet.toml --timeout 3
+said 'R0404.*the broker knows no agent'
