@@ -1,10 +1,11 @@
-// Signed files, lists of revoked keys, and the stored record of them: decoded or refused with a
-// reason; what is decoded is written as it was.
+// Signed files, lists of revoked keys, the stored record of them, and what agents are told and say:
+// decoded or refused with a reason; what is decoded is written as it was.
 #include <algorithm>
 
 #include "base/check.h"
 #include "online_change/package/signed_file.h"
 #include "online_change/store/trust_record.h"
+#include "tools/stvm/agent_answer.h"
 
 namespace {
 
@@ -19,11 +20,33 @@ void check_stored(base::ByteSpan bytes) {
   }
 }
 
+// Texts for people and names of errors come back as they are shown: so the second time is compared.
+template <class T, class Decode>
+void check_twice(const base::Result<T>& message, Decode&& decode) {
+  if (!message.ok()) {
+    base::check(!message.error().text.empty(), "a reason");
+    return;
+  }
+  const base::Bytes once = stvm::encode(*message);
+  const auto again = decode(once);
+  base::check(again.ok() && stvm::encode(*again) == once, "it is written as it was read");
+}
+
+void check_agents(base::ByteSpan bytes) {
+  const auto order = stvm::decode_agent_order(bytes);
+  if (order.ok()) {
+    base::check(std::ranges::equal(stvm::encode(*order), bytes), "an order is written as it was");
+  }
+  check_twice(stvm::decode_agent_about(bytes), stvm::decode_agent_about);
+  check_twice(stvm::decode_agent_answer(bytes), stvm::decode_agent_answer);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const base::ByteSpan bytes(data, size);
   check_stored(bytes);
+  check_agents(bytes);
   base::Bytes content(bytes.begin(), bytes.end());
   const auto file = online_change::open_signed(content);
   if (!file.ok()) {
@@ -36,5 +59,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   base::check(file->message == online_change::message_of(file->statement),
               "what is signed is what was read");
   check_stored(content);
+  check_agents(content);
   return 0;
 }
