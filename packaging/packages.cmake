@@ -75,6 +75,7 @@ set(CPACK_DEBIAN_STVM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian
 set(CPACK_DEBIAN_STVM_PACKAGE_DEPENDS systemd)
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_NAME stvm-agent)
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_DEPENDS "stvm (= ${CPACK_PACKAGE_VERSION})")
+set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_RECOMMENDS curl)
 set(CPACK_DEBIAN_STC_DESCRIPTION "compiler of IEC 61131-3 programs
 Structured Text, ladder, function block diagrams, charts and instruction
 lists become an image for stvm, a soft PLC whose running program can be

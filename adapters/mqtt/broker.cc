@@ -104,6 +104,7 @@ class Mosquitto : public Broker {
     if (events_.empty()) return std::nullopt;
     Event event = std::move(events_.front());
     events_.pop_front();
+    waiting_bytes_ -= event.message.payload.size();
     return event;
   }
 
@@ -151,8 +152,11 @@ class Mosquitto : public Broker {
   void add(Event event) {
     {
       const std::lock_guard<std::mutex> one(mutex_);
+      const size_t bytes = waiting_bytes_ + event.message.payload.size();
+      const bool full = events_.size() >= kMostWaiting || bytes > kMostWaitingBytes;
       // A message that is dropped was lost, as any may be; what the connection does is not.
-      if (event.kind == Event::Kind::kMessage && events_.size() >= kMostWaiting) return;
+      if (event.kind == Event::Kind::kMessage && full) return;
+      waiting_bytes_ = bytes;
       events_.push_back(std::move(event));
     }
     came_.notify_one();
@@ -188,7 +192,8 @@ class Mosquitto : public Broker {
   std::condition_variable came_;
   std::condition_variable left_;
   std::deque<Event> events_;
-  int64_t leaving_ = 0;  // published, and not yet with the broker
+  size_t waiting_bytes_ = 0;  // of their payloads
+  int64_t leaving_ = 0;       // published, and not yet with the broker
 };
 
 base::Error no_url(std::string_view url, const char* why) {

@@ -15,7 +15,9 @@
 namespace mqtt {
 
 inline constexpr size_t kMostPayload = 1u << 20;  // bytes; what is longer is dropped
-inline constexpr size_t kMostWaiting = 4096;      // messages that nobody has taken yet
+// Messages that nobody has taken yet, and their bytes: pieces of one file and what comes beside.
+inline constexpr size_t kMostWaiting = 4096;
+inline constexpr size_t kMostWaitingBytes = 96u << 20;
 
 struct Message {
   std::string topic;
@@ -67,7 +69,7 @@ struct Address {
 // kUsage: it is no such URL, or one without TLS to another machine.
 base::Result<Address> parse_url(std::string_view url);
 
-// With this build's library. It returns before there is a connection. kNoDriver: the build has no
+// With this build's library. It returns before there is a connection. kNoBroker: the build has no
 // library; kUsage; kFileNotFound and its like: of the files that settings name.
 base::Result<std::unique_ptr<Broker>> connect(const Settings& settings);
 

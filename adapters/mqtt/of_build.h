@@ -9,7 +9,7 @@ inline base::Result<std::unique_ptr<Broker>> connect_in_this_build(const Setting
 #ifdef STC_HAS_MQTT
   return connect(settings);
 #else
-  return base::Error{base::Refusal::kNoDriver,
+  return base::Error{base::Refusal::kNoBroker,
                      settings.url +
                          ": this program was built without libmosquitto (package "
                          "libmosquitto-dev)"};

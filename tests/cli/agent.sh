@@ -22,47 +22,16 @@ said 'R0427: keys.toml: an agent needs .name'
 printf '[broker]\nurl = "mqtt://elsewhere"\n' >plain.toml
 code=0
 "$bin/stvm" agent --dir one --broker plain.toml --trust one.toml >out 2>err || code=$?
-if grep -q 'R0411.*libmosquitto-dev' err; then
+if grep -q 'R0429.*libmosquitto-dev' err; then
   [ $code = 7 ] || fail "exit code $code"
   expect 7 stvm fleet status --fleet fleet.toml
-  said 'R0411.*libmosquitto-dev'
+  said 'R0429.*libmosquitto-dev'
   echo "built without libmosquitto: refused, as it should be"
   exit 0
 fi
 said 'R0504.*without TLS only a broker of this machine'
-broker_program=$(command -v mosquitto || ls /usr/sbin/mosquitto 2>/dev/null) || true
-if [ -z "$broker_program" ] || ! command -v openssl >/dev/null; then
-  echo "SKIPPED: no mosquitto or no openssl here (scripts/setup.sh installs them)"
-  exit 0
-fi
-
-# A CA, and the certificate of a broker on this machine.
-openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=test-ca \
-  -keyout ca.key -out ca.pem 2>/dev/null
-openssl req -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -subj /CN=localhost \
-  -keyout broker.key -out broker.csr 2>/dev/null
-echo 'subjectAltName = DNS:localhost' >san
-openssl x509 -req -in broker.csr -CA ca.pem -CAkey ca.key -CAcreateserial -days 2 -extfile san \
-  -out broker.pem 2>/dev/null
-openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=other \
-  -keyout other-ca.key -out other-ca.pem 2>/dev/null
-port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0))
-print(s.getsockname()[1])')
-cat >broker.conf <<CONF
-user $(id -un)
-listener $port 127.0.0.1
-certfile $work/broker.pem
-keyfile $work/broker.key
-allow_anonymous true
-persistence true
-persistence_location $work/
-autosave_interval 1
-autosave_on_changes true
-CONF
-start_broker() {
-  "$broker_program" -c broker.conf >>broker.log 2>&1 &
-  echo $! >broker.pid
-}
+. "$source_dir/tests/cli/lib_broker.sh"
+make_ca other-ca
 start_broker
 
 # Two controllers with keys, and their agents.
@@ -78,28 +47,14 @@ project v2.st 2
 stc build -q v1.st -o v1.img
 stc key sign v1.img --key office.key -o v1.signed
 stc fleet v1.st v2.st -o x.fleet 2>/dev/null
-broker_table() {
-  printf '[broker]\nurl = "mqtts://localhost:%s"\nca = "%s/%s"\nprefix = "plant/a"\n' "$port" \
-    "$work" "${1:-ca.pem}"
-}
 broker_table >broker.toml
 broker_table >fleet.toml
-start_agent() {
-  "$bin/stvm" agent --dir "$1" --broker "${2:-broker.toml}" --trust "$1.toml" >>"$1.agent.log" 2>&1 &
-  echo $! >"$1-agent.pid"
-}
 for name in one two; do
   { echo "name = \"$name\""; cat keys.toml; } >$name.toml
   serve $name --trust $name.toml v1.signed
   start_agent $name
   printf '[controllers.%s]\nagent = "%s"\n' $name $name >>fleet.toml
 done
-fleet() {
-  verb=$1
-  shift
-  "$bin/stvm" fleet "$verb" x.fleet --fleet fleet.toml --allow-overrun --timeout 600 "$@"
-}
-running() { "$bin/stvm" status --dir "$1" --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/'; }
 
 # F-01: what they are is there without asking them.
 wait_for '^two +Main|^two +v1|^two +[A-Za-z0-9]+ +reached' "$bin/stvm" fleet status --fleet fleet.toml
@@ -138,7 +93,7 @@ said '^one .*done'
 said 'R0404: its agent is not connected to the broker; the order waits for it'
 [ "$(running two)" = "$old" ] || fail "who ordered that?"
 # So does the broker, with all that it keeps.
-kill "$(cat broker.pid)" && wait "$(cat broker.pid)" || true
+stop_broker
 start_broker
 start_agent two
 wait_for '"edits":1' "$bin/stvm" status --dir two --format json
@@ -149,7 +104,6 @@ said '^two .*accepted'
 new=$(running two)
 
 # A broker with another certificate is no broker.
-broker_table other-ca.pem >other.toml
-cat fleet.toml | sed 's/ca.pem/other-ca.pem/' >other-fleet.toml
+sed 's/ca.pem/other-ca.pem/' fleet.toml >other-fleet.toml
 expect 7 stvm fleet status --fleet other-fleet.toml --timeout 3
 said 'R0404.*the broker knows no agent'

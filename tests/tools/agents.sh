@@ -36,7 +36,11 @@ PROGRAM Main VAR f : Filler; END_VAR f(); END_PROGRAM" >"$1"
 program v1.st 1
 program v2.st 2
 "$bin/stc" fleet v1.st v2.st -o x.fleet >/dev/null
+echo "| controllers | all connected, s | half has it, s | the others, s | broker again, s \
+| accepted, s | messages each | KiB each | agent, KiB | broker, KiB each |"
+echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 for count in "$@"; do
   rm -f mosquitto.db
-  "$bin/agents" "$mosquitto" "$work" "$port" "$work/v1.st" "$work/x.fleet" "$count"
+  "$bin/agents" "$mosquitto" "$work" "$port" "$work/v1.st" "$work/x.fleet" "$count" \
+    2>mosquitto.err
 done

@@ -8,18 +8,25 @@ namespace {
 
 constexpr const char* kMemoryFile = "order";
 constexpr uint64_t kMostStored = 16u << 20;
+constexpr size_t kHeadBytes = sizeof(base::Digest) + sizeof(uint64_t);
 
 }  // namespace
 
+// A file may be longer than what is in it: storage has sectors.
 void AgentMemory::read() {
   const base::Result<uint64_t> size = storage_.size(kMemoryFile);
   if (!size.ok() || *size > kMostStored) return;
   const base::Result<base::Bytes> bytes = storage_.read(kMemoryFile, 0, *size);
-  if (!bytes.ok() || bytes->size() < sizeof(base::Digest)) return;
-  base::ReadArchive in(*bytes);
+  if (!bytes.ok()) return;
+  base::ReadArchive head(*bytes);
   base::Digest sum{};
-  in(sum);
-  if (base::sha256(base::ByteSpan(*bytes).subspan(sum.size())) != sum) return;
+  uint64_t length = 0;
+  head(sum);
+  head(length);
+  if (head.failed() || length > bytes->size() - kHeadBytes) return;
+  const base::ByteSpan content = base::ByteSpan(*bytes).subspan(kHeadBytes, length);
+  if (base::sha256(content) != sum) return;
+  base::ReadArchive in(content);
   base::Bytes order;
   base::Bytes answer;
   in(order);
@@ -45,11 +52,12 @@ base::Status AgentMemory::write() const {
   content(order_);
   content(answer_);
   const base::Bytes bytes = content.take();
-  base::WriteArchive all;
-  all(base::sha256(bytes));
-  base::Bytes sum = all.take();
-  const vm::Storage::Piece pieces[] = {{0, sum}, {sum.size(), bytes}};
-  return storage_.replace(kMemoryFile, sum.size() + bytes.size(), pieces);
+  base::WriteArchive head;
+  head(base::sha256(bytes));
+  head(uint64_t{bytes.size()});
+  const base::Bytes begin = head.take();
+  const vm::Storage::Piece pieces[] = {{0, begin}, {begin.size(), bytes}};
+  return storage_.replace(kMemoryFile, begin.size() + bytes.size(), pieces);
 }
 
 }  // namespace stvm

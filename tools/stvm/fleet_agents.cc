@@ -33,7 +33,7 @@ FleetAgents::FleetAgents(Settings settings, FleetAgentsPorts ports,
 
 // What nobody waits for any more is taken from the broker.
 FleetAgents::~FleetAgents() {
-  if (open_.empty() && settings_.files.empty()) {
+  if (!anything_waits() && settings_.files.empty()) {
     for (const auto& [digest, file] : put_) {
       for (uint64_t at = 0; at * kAgentPiece < file.size; ++at) {
         (void)ports_.broker->publish(settings_.topics.file(digest, std::to_string(at)), {}, true);
@@ -103,7 +103,9 @@ void FleetAgents::take(const mqtt::Message& message) {
     if (about.ok()) known.about = std::move(*about);
   } else if (what == kAgentAnswer) {
     base::Result<AgentAnswer> answer = decode_agent_answer(message.payload);
-    if (answer.ok()) known.answer = std::move(*answer);
+    if (!answer.ok()) return;
+    known.answer = std::move(*answer);
+    if (known.waits_for == known.answer->order) known.waits_for.reset();
   }
 }
 
@@ -121,12 +123,19 @@ bool FleetAgents::is_online(const FleetMember& member) {
   return known.ok() && known->online;
 }
 
+bool FleetAgents::anything_waits() {
+  const std::lock_guard<std::mutex> one(mutex_);
+  return std::ranges::any_of(
+      known_, [](const auto& one_of) { return one_of.second.waits_for.has_value(); });
+}
+
+// What a broker has of a controller may be older than the order that it has not answered.
 PlanTrace FleetAgents::look(const FleetMember& member, const std::string& plan) {
   base::Result<Known> known = wait_for(member);
   if (!known.ok()) return {};
   PlanTrace trace;
   if (known->about->plan == plan) trace = known->about->trace;
-  trace.answers = known->online && known->about->trace.answers;
+  trace.answers = known->online && !known->waits_for && known->about->trace.answers;
   return trace;
 }
 
@@ -249,7 +258,7 @@ base::Result<base::Digest> FleetAgents::send(const AgentOrder& order, const Flee
   const base::Digest id = base::sha256(*order_signed);
   {
     const std::lock_guard<std::mutex> one(mutex_);
-    open_.insert(id);
+    known_[member.place].waits_for = id;
   }
   base::Status sent =
       ports_.broker->publish(settings_.topics.of(member.place, kAgentDesired), *order_signed, true);
@@ -270,7 +279,6 @@ base::Result<AgentAnswer> FleetAgents::ask(const AgentOrder& order, const FleetM
     return not_reached(online ? "its agent does not answer"
                               : "its agent is not connected to the broker");
   }
-  open_.erase(*id);
   if (known.about && order.act != AgentAct::kShow) {
     known.about->plan = order.plan;
     known.about->trace = known.answer->trace;

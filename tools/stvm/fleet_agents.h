@@ -8,7 +8,6 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include "tools/stvm/agent_answer.h"
@@ -61,6 +60,7 @@ class FleetAgents {
     bool online = false;
     std::optional<AgentAbout> about;
     std::optional<AgentAnswer> answer;
+    std::optional<base::Digest> waits_for;  // its last order, while that has no answer
   };
   struct Program {
     base::Bytes bytes;
@@ -72,6 +72,7 @@ class FleetAgents {
   void take(const mqtt::Event& event);
   void take(const mqtt::Message& message);
   void subscribe_all();
+  bool anything_waits();
   base::Result<Known> wait_for(const FleetMember& member);
   base::Result<Program*> program_of(const base::Digest& running, const FleetMember& member);
   base::Result<base::Bytes> shown(const FleetMember& member, const base::Digest& running);
@@ -96,7 +97,6 @@ class FleetAgents {
   std::map<base::Digest, Program> programs_;
   std::map<base::Digest, AgentFile> put_;         // files that were published, by hash
   std::map<std::string, AgentFile> fleet_files_;  // by path
-  std::set<base::Digest> open_;                   // orders without an answer
   std::atomic<bool> stops_{false};
   std::thread pump_;
 };

@@ -246,6 +246,19 @@ TEST_F(AgentOfOne, F03_NothingIsDoneThatIsNotSignedForIt) {
   EXPECT_EQ(switches(), 1u) << agent_->log;
 }
 
+TEST_F(AgentOfOne, F03_AClockThatGoesBackMakesNoExpiredOrderGood) {
+  const stvm::AgentOrder change = order(AgentAct::kBring);
+  give(order(AgentAct::kCheck), {.expires_s = fleet_test::kAgentNow + 10});
+  EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kPossible) << agent_->log;
+  agent_->wall_s -= 10LL * 365 * 86'400;
+  desire(sign_order(change, {.sequence = 2, .expires_s = fleet_test::kAgentNow}));
+  agent_->work();
+  EXPECT_NE(agent_->log.find("R0424"), std::string::npos) << agent_->log;
+  EXPECT_EQ(switches(), 0u);
+  give(change, {.sequence = 2});
+  EXPECT_EQ(switches(), 1u) << agent_->log;
+}
+
 TEST_F(AgentOfOne, F02_AnAgentThatIsKilledGoesOnWithItsOrder) {
   // The connection to the controller is cut at each message: so is a process that ends there.
   for (int cut = 0; cut < 60; ++cut) {
@@ -259,7 +272,7 @@ TEST_F(AgentOfOne, F02_AnAgentThatIsKilledGoesOnWithItsOrder) {
     agent_->kill();
     agent_->start();
     agent_->work();
-    ASSERT_TRUE(agent_->answer().has_value());
+    ASSERT_TRUE(agent_->answer().has_value()) << cut << ": " << agent_->log;
     const FleetOutcome outcome = agent_->answer()->row.outcome;
     EXPECT_TRUE(outcome == FleetOutcome::kDone || outcome == FleetOutcome::kHadIt)
         << cut << ": " << agent_->log;
