@@ -57,7 +57,7 @@ endfunction()
 # out in one, it ends; there is nothing to clean up. A controller goes on (base/memory_limit.h).
 function(stc_compile_client)
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    stc_compile_with(client_headers "-Os;-fno-exceptions"
+    stc_compile_with(client_headers "-Oz;-fno-exceptions"
                      HEADERS ${STC_COMMON_HEADERS} ${STC_THREAD_HEADERS} SOURCES ${ARGN})
   endif()
 endfunction()

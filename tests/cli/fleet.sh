@@ -242,7 +242,7 @@ mistake() {
 mistake 'name = "x"\n' 'bad.toml:1:1: .*name. is not known here'
 mistake '[controllers.a]\ndir = 3\n' 'bad.toml:2:7: .*a text is wanted'
 mistake '[controllers.a]\nallow_loss = "yes"\ndir = "x"\n' 'bad.toml:2:14: .*true or false'
-mistake '[controllers.a]\ndir = "x"\nhost = "y"\n' 'has a dir and a host'
+mistake '[controllers.a]\ndir = "x"\nhost = "y"\n' 'has two of dir, host and agent'
 mistake '[controllers.a]\nallow_loss = true\n' 'has no .dir. or .host.'
 expect 2 stvm fleet status x.fleet --dir one --dir one
 said 'two controllers are called .one.'

@@ -4,7 +4,7 @@
 #include "tools/stc/commands.h"
 #include "tools/stc/memory_budget.h"
 #include "tools/stc/run_report.h"
-#include "vm/native/program.h"
+#include "vm/native/available.h"
 
 namespace {
 

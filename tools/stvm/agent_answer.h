@@ -1,6 +1,6 @@
 // What an agent says (F-01, F-02): what its controller is and has, and what came of its last order.
 // Nobody signs it: a broker can lie about a controller, but not change one. JSON for people and
-// other programs is agent_page.h.
+// other programs is agent_status.cc.
 #pragma once
 
 #include <map>

@@ -1,8 +1,8 @@
 // stvm: the controller's command line.
 #include "tools/common/refusal_text.h"
 #include "tools/stvm/commands.h"
-#include "vm/native/program.h"
-#include "vm/runtime/protocol.h"
+#include "vm/native/available.h"
+#include "vm/runtime/protocol_version.h"
 
 namespace {
 

@@ -11,6 +11,7 @@
 
 #include "ir/bytecode/pou_version.h"
 #include "vm/exec/tier.h"
+#include "vm/native/available.h"
 
 namespace vm {
 struct CodeTable;
@@ -22,9 +23,6 @@ namespace vm::native {
 
 class CodeMemory;
 struct PouNative;
-
-// Has this machine a native tier?
-bool is_available();
 
 // How far a Program is that is made while others look.
 struct Progress {

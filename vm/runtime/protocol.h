@@ -18,11 +18,10 @@
 #include "base/result.h"
 #include "vm/runtime/controller.h"
 #include "vm/runtime/memory_report.h"
+#include "vm/runtime/protocol_version.h"
 
 namespace vm {
 
-// Another one with each other layout of a message (tests/unit/store/protocol_layout_test.cc).
-inline constexpr uint8_t kProtocolVersion = 14;
 // Those that are understood, up to any later one. Recordings hold requests.
 inline constexpr uint8_t kOldestRequest = 12;
 inline constexpr uint8_t kOldestAnswer = 13;
