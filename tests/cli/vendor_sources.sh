@@ -43,4 +43,4 @@ for one in "$corpus"/twincat/*; do
   same_laid_out twincat "imported/$name"
   seen=$((seen + 1))
 done
-[ "$seen" -ge 34 ] || fail "only $seen sources"
+[ "$seen" -ge 120 ] || fail "only $seen sources"
