@@ -138,6 +138,7 @@ void References::bind_reference(const Stmt& stmt) {
           "`" + sema_.report.type_text(note.type) + "` is not a REFERENCE TO", "assign with `:=`");
     return;
   }
+  if (note.variable.valid()) sema_.mark_written(note.variable);
   const ir::Place where = ask<Places>().raw_place(stmt.target);
   const ir::ValueId handle = reference_value(stmt.value, note.reference);
   set_line(stmt.span);

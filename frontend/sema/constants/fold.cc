@@ -247,6 +247,20 @@ std::optional<Constant> Folder::unary(ExprId id, const Expr& expr) {
   return exact(result, ~result.integer, expr);
 }
 
+// Literals without a point are whole numbers to CODESYS and TwinCAT, whatever wants their quotient.
+bool Folder::is_whole_quotient(const Expr& expr, const Note& note) const {
+  if (note.flex != Flex::kInteger) return false;
+  if (expr.binary == BinaryOp::kMod) return true;
+  return expr.binary == BinaryOp::kDiv && sema_.options.dialect != Dialect::kIec;
+}
+
+void Folder::warn_of_remainder(const Expr& expr, Wide a, Wide b) const {
+  if (expr.binary != BinaryOp::kDiv || a % b == 0) return;
+  warning(DiagnosticCode::kWholeQuotient, expr.span,
+          "the quotient of whole numbers is whole: " + wide_text(a / b),
+          "write one of them with a point, as 2.0");
+}
+
 std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   const Note note = infer(id);
   ir::TypeId saved = context_;
@@ -255,6 +269,9 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   } else if (note.flex == Flex::kNone) {
     context_ = computed_type(sema_, note);
   }
+  const bool whole = is_whole_quotient(expr, note);
+  const bool for_real = whole && context_is_real();
+  if (whole) context_ = {};
   auto a = fold(expr.operand);
   auto b = fold(expr.right);
   std::optional<Constant> out;
@@ -272,6 +289,7 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
         out = real_binary(expr, real_of(*a), real_of(*b), result);
       } else {
         out = integer_binary(expr, a->integer, b->integer, result);
+        if (out && for_real) warn_of_remainder(expr, a->integer, b->integer);
         bool logical = operator_class(expr.binary) == OperatorClass::kLogical;
         if (out) out->pattern = logical && a->pattern && b->pattern;
       }

@@ -29,6 +29,8 @@ class Folder : private Phase {
   std::optional<Constant> compare(const Expr& expr, const Constant& a, const Constant& b);
   std::optional<Constant> real_binary(const Expr& expr, double a, double b, Constant result);
   std::optional<Constant> integer_binary(const Expr& expr, Wide a, Wide b, Constant result);
+  bool is_whole_quotient(const Expr& expr, const Note& note) const;
+  void warn_of_remainder(const Expr& expr, Wide a, Wide b) const;
   std::optional<Constant> exact(Constant result, Wide value, const Expr& expr);
   Constant of_bits(ir::TypeId type, uint64_t bits) const {
     return scalar_constant(sema_.program.types, type, bits);

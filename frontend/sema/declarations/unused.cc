@@ -6,6 +6,13 @@
 namespace frontend {
 namespace {
 
+// FB_Init and its kind are called by the system, which asks for no result.
+bool is_called_by_system(const PouInfo& pou) {
+  const std::string_view name = pou.decl->name.text;
+  return pou.owner != kNoPou && (ir::same_name(name, "FB_Init") || ir::same_name(name, "FB_Exit") ||
+                                 ir::same_name(name, "FB_Reinit"));
+}
+
 // Covers functions and methods; a prototype has no body that could assign.
 void report_unassigned_results(const Phase& phase) {
   for (const PouInfo& pou : phase.sema().declared.pous) {
@@ -16,7 +23,7 @@ void report_unassigned_results(const Phase& phase) {
         pou.owner != kNoPou &&
         (pou.decl->is_abstract ||
          phase.sema().declared.pous[pou.owner].decl->kind == PouKind::kInterface);
-    if (prototype || phase.resolve(pou.result).written) continue;
+    if (prototype || is_called_by_system(pou) || phase.resolve(pou.result).written) continue;
     phase.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
                   "`" + std::string(pou.decl->name.text) + "` never assigns its result",
                   "assign it: `" + std::string(pou.decl->name.text) + " := ...`");
@@ -37,6 +44,7 @@ void report_unused(const Phase& phase) {
   };
   if (phase.sema().report.has_hard_errors()) return;
   report_unassigned_results(phase);
+  report_other_attributes(phase);
   for (const Variable& variable : phase.sema().declared.variables) {
     bool private_section = variable.section == VarSection::kLocal ||
                            variable.section == VarSection::kTemp ||

@@ -7,5 +7,7 @@ namespace frontend {
 class Phase;
 
 void report_unused(const Phase& phase);
+// Attributes that mean something to other tools and nothing here (known_attributes.cc).
+void report_other_attributes(const Phase& phase);
 
 }  // namespace frontend
