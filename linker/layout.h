@@ -3,7 +3,8 @@
 // its offset (A1, A4); deleted members become holes; changed and added ones go first fit into holes
 // that were free before, then after, and into holes that this very change frees only when nothing
 // else is left inside the capacity (so that their initial value can be written before the switch,
-// A19). Areas get slack when they are first laid out and keep their capacity while the contents fit
+// A19). The members of a structure that is new lie in the order of their declaration, each aligned.
+// Areas get slack when they are first laid out and keep their capacity while the contents fit
 // (A5 iii, A8). What extends a block has the members of its base where the base has them, and its
 // own ones after the base's capacity, so that the base can grow in its slack
 // (docs/adr/0006-objects.md). A structure inside a union has nothing but its declaration to go by:
