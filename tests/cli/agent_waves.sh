@@ -147,22 +147,27 @@ expect 0 plan abort
 said '^1 +two +undone'
 none_on_trial one two three
 
-# A broker is cut off in the middle: what is behind it is lost, and the rest of its wave goes back.
-# What was ordered reaches it later, and so does the word that takes it back.
+# A broker is cut off in the middle, and an agent behind it has ended: its controller is lost, and
+# the rest of its wave goes back. What was ordered reaches it later, and so does the word that takes
+# it back.
 waves 1h
 rm -f x.fleet.plan
 begin_roll
 wait_for '^1 two on trial$' cat_plan
 end_tool TERM
+kill -9 "$(cat three-agent.pid)"
+wait_for '^three .*unreachable' "$bin/stvm" fleet status --fleet fleet.toml
 kill -STOP "$(cat branch.pid)"
 old=$(running three)
 sed -i 's/soak = ..1h/soak = \\"1s/' x.fleet.plan
-expect 7 plan resume --timeout 3
+expect 7 plan resume --timeout 600
 said '^2 +one +undone'
 said '^2 +three +lost'
+id=$("$bin/stvm" fleet watch x.fleet.plan | sed -n 's/^plan \([0-9a-f]*\) .*/\1/p' | head -1)
 kill -CONT "$(cat branch.pid)"
+start_agent three branch.toml
 # The last word takes it back, whether or not the order of before came first.
-wait_for 'plan [0-9a-f]{8}: (had it not|undone)' cat three.agent.log
+wait_for "plan $id: (had it not|undone)" cat three.agent.log
 none_on_trial one two three
 [ "$(running three)" = "$old" ] || fail "it runs what it was told to give back"
 

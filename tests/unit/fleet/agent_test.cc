@@ -1,6 +1,7 @@
 // F-01 to F-03: one agent, and a broker that loses, repeats and turns around what it is given, or
 // makes it up.
 #include "tests/unit/fleet/agents.h"
+#include "tools/stvm/fleet_agents.h"
 
 namespace {
 
@@ -281,6 +282,37 @@ TEST_F(AgentOfOne, F02_AnAgentThatIsKilledGoesOnWithItsOrder) {
     undo.plan = change.plan;
     give(undo, {.sequence = 2});
     ASSERT_EQ(edits(), 0u) << cut << ": " << agent_->log;
+  }
+}
+
+// Brokers keep what an agent said last, also while nobody reaches it.
+TEST_F(AgentOfOne, X608_WhatWasSaidBeforeAnOrderIsNoAnswerToIt) {
+  const stvm::FleetMember member{"line1", "line1", false, stvm::PlaceKind::kAtAgent};
+  stvm::FleetEdit edit = fleet_.edit();
+  edit.path = folder_->file("edit.fleet");
+  ASSERT_TRUE(tools::write_file(edit.path, fleet_file_).ok());
+  uint64_t sequence = 0;
+  stvm::FleetAgentsPorts ports;
+  ports.broker = std::make_unique<fleet_test::HubBroker>(hub_, std::nullopt);
+  ports.sign = [&](base::ByteSpan content, const std::string&, const std::string&) {
+    const auto order = stvm::decode_agent_order(content);
+    return base::Result<base::Bytes>(sign_order(*order, {.sequence = ++sequence}));
+  };
+  ports.package = [&](const base::Bytes& running) { return fleet_.access().package(running, 0); };
+  stvm::FleetAgents::Settings settings;
+  settings.topics = kTopics;
+  settings.plan = "0badcafe";
+  settings.patience_ms = 1;
+  stvm::FleetAgents tool(std::move(settings), std::move(ports), {member});
+  while (!tool.is_online(member)) {
+  }  // until the tool has heard what the broker keeps
+  EXPECT_TRUE(tool.look(member, "0badcafe").answers);
+  stvm::FleetTalk talk(true);
+  const stvm::FleetRow row = tool.change(edit, fleet_test::quietly(), talk, member);
+  EXPECT_EQ(row.outcome, FleetOutcome::kUnreachable);
+  EXPECT_FALSE(tool.look(member, "0badcafe").answers);
+  agent_->work();
+  while (!tool.look(member, "0badcafe").answers) {
   }
 }
 
