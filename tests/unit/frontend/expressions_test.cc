@@ -109,7 +109,7 @@ TEST(Constants, FoldExactly) {
   Controlled run(
       "VAR_GLOBAL CONSTANT N : INT := M * 2; M : INT := 3; S : STRING := 'x'; END_VAR\n"
       "PROGRAM P VAR CONSTANT K : DINT := N + 1; END_VAR VAR a : ARRAY[1..N] OF INT; x : INT := K; "
-      "b : BOOL := N > 5 AND M = 3; r : REAL := 1 / 4; w : WORD := NOT 0; t : TIME := T#1s * 2; "
+      "b : BOOL := N > 5 AND M = 3; r : REAL := 1.0 / 4; w : WORD := NOT 0; t : TIME := T#1s * 2; "
       "s1 : STRING[3] := S; END_VAR\n"
       "a[N] := 1; END_PROGRAM");
   run.scan();
