@@ -243,7 +243,7 @@ mistake 'name = "x"\n' 'bad.toml:1:1: .*name. is not known here'
 mistake '[controllers.a]\ndir = 3\n' 'bad.toml:2:7: .*a text is wanted'
 mistake '[controllers.a]\nallow_loss = "yes"\ndir = "x"\n' 'bad.toml:2:14: .*true or false'
 mistake '[controllers.a]\ndir = "x"\nhost = "y"\n' 'has two of dir, host and agent'
-mistake '[controllers.a]\nallow_loss = true\n' 'has no .dir. or .host.'
+mistake '[controllers.a]\nallow_loss = true\n' 'has no .dir., .host. or .agent.'
 expect 2 stvm fleet status x.fleet --dir one --dir one
 said 'two controllers are called .one.'
 mistake '[controllers.a]\nname = 3\ndir = "x"\n' 'bad.toml:2:8: .*a text is wanted'
