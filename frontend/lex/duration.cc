@@ -15,7 +15,7 @@ class DurationDecoder {
   explicit DurationDecoder(std::string_view text) : text_(text) {}
 
   DecodedTime run() {
-    out_.is_long = to_upper(text_[0]) == 'L';
+    out_.is_long = !text_.empty() && to_upper(text_[0]) == 'L';
     at_ = text_.find('#') + 1;
     if (peek() == '-' || peek() == '+') {
       out_.negative = peek() == '-';
