@@ -15,7 +15,7 @@ struct OtherAttribute {
 };
 
 constexpr OtherAttribute kOthers[] = {
-    {"pack_mode", "members lie where the compiler puts them",
+    {"pack_mode", "members are aligned",
      "copy members one by one where bytes have to stand in an order"},
     {"call_after_init", "nothing is called after FB_Init", "call the method in FB_Init, or once"},
     {"initialize_on_call", "an input that a call leaves out keeps its value",
