@@ -207,8 +207,8 @@ base::Result<base::Bytes> FleetAgents::shown(const FleetMember& member,
   }
   const std::string pieces = settings_.topics.file(file.digest, "+");
   std::unique_lock<std::mutex> held(mutex_);
-  pieces_.emplace(file);
   if (base::Status asked = ports_.broker->subscribe(pieces); !asked.ok()) return asked.error();
+  pieces_.emplace(file);
   const bool whole =
       came_.wait_for(held, milliseconds(settings_.patience_ms), [&] { return pieces_->whole(); });
   base::Result<base::Bytes> bytes =
