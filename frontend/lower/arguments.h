@@ -34,12 +34,17 @@ class Arguments : public BodyPhase {
   void evaluate_arguments(const Expr& call, std::vector<Binding>& bindings);
   void pass_input(const Binding& binding, const ir::Place& parameter);
   void pass_defaults(const PouInfo& callee, const std::vector<Binding>& bindings);
+  void pass_initial_inputs(const PouInfo& block, const std::vector<Binding>& bindings,
+                           const std::function<ir::Place(const Variable&)>& place_of);
   void take_outputs(std::vector<Binding>& bindings,
                     const std::function<ir::Place(const Variable&)>& place_of);
   ir::Place argument_place(const PouInfo& callee, const Variable& variable) const;
+  // Says that this code has a value of the callee's unit.
+  void hold(const PouInfo& callee);
 
  private:
-  void hold(const PouInfo& callee);
+  bool is_given(VarId parameter, const std::vector<Binding>& bindings) const;
+  void pass_default(const PouInfo& callee, const Variable& variable, const ir::Place& parameter);
   bool bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
                        std::vector<Binding>& bindings);
   void evaluate_input(Binding& binding, bool keep);

@@ -46,6 +46,7 @@ void CallCode::call_instance(const Expr& call, uint32_t pou) {
     if (variable.section != VarSection::kOutput)
       ask<Arguments>().pass_input(binding, place_of(variable));
   }
+  ask<Arguments>().pass_initial_inputs(block, bindings, place_of);
   build_.call_instance(instance);
   ask<Arguments>().take_outputs(bindings, place_of);
 }
@@ -63,6 +64,7 @@ void CallCode::call_base(const Expr& call, uint32_t pou) {
     if (variable.section != VarSection::kOutput)
       ask<Arguments>().pass_input(binding, place_of(variable));
   }
+  ask<Arguments>().pass_initial_inputs(base, bindings, place_of);
   build_.call_body(base.id);
   ask<Arguments>().take_outputs(bindings, place_of);
 }

@@ -8,6 +8,7 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/write_checks.h"
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 
@@ -177,20 +178,36 @@ void Arguments::pass_defaults(const PouInfo& callee, const std::vector<Binding>&
   for (VarId id : callee.locals) {
     const Variable& variable = resolve(id);
     if (variable.section != VarSection::kInput || !variable.type.valid()) continue;
-    bool given = false;
-    for (const Binding& binding : bindings) given = given || binding.variable == id;
-    if (given) continue;
-    hold(callee);
-    ir::Place parameter = argument_place(callee, variable);
-    if (!types().is_scalar(variable.type)) {
-      build_.init(parameter, variable.init);
-      continue;
-    }
-    ir::ConstId init = variable.init.valid() ? variable.init : types()[variable.type].init;
-    uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
-    ir::Scalar machine = scalar(variable.type);
-    build_.store(parameter, machine, build_.constant(machine, bits));
+    if (!is_given(id, bindings)) pass_default(callee, variable, argument_place(callee, variable));
   }
+}
+
+// With 'initialize_on_call', an input that this call leaves out does not keep its value.
+void Arguments::pass_initial_inputs(const PouInfo& block, const std::vector<Binding>& bindings,
+                                    const std::function<ir::Place(const Variable&)>& place_of) {
+  for (VarId id : ask<Objects>().variables_of(block)) {
+    const Variable& variable = resolve(id);
+    if (variable.section != VarSection::kInput || !variable.type.valid()) continue;
+    if (variable.decl == nullptr || variable.decl->attributes.count == 0) continue;
+    const bool again =
+        tree_.find_attribute(variable.decl->attributes, kInitializeOnCall) != nullptr;
+    if (again && !is_given(id, bindings)) pass_default(block, variable, place_of(variable));
+  }
+}
+
+bool Arguments::is_given(VarId parameter, const std::vector<Binding>& bindings) const {
+  return std::any_of(bindings.begin(), bindings.end(),
+                     [&](const Binding& binding) { return binding.variable == parameter; });
+}
+
+void Arguments::pass_default(const PouInfo& callee, const Variable& variable,
+                             const ir::Place& parameter) {
+  hold(callee);
+  if (!types().is_scalar(variable.type)) return build_.init(parameter, variable.init);
+  const ir::ConstId init = variable.init.valid() ? variable.init : types()[variable.type].init;
+  const uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
+  const ir::Scalar machine = scalar(variable.type);
+  build_.store(parameter, machine, build_.constant(machine, bits));
 }
 
 // The code here has a value of the callee's unit, so it goes with another version of it no more.

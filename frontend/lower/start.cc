@@ -1,33 +1,10 @@
-#include "frontend/lower/arguments.h"
+#include "frontend/lower/given_values.h"
 #include "frontend/lower/pool_code.h"
 #include "frontend/lower/start_code.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/objects/objects.h"
-#include "ir/types/stamps.h"
 
 namespace frontend {
-namespace {
-
-constexpr std::string_view kImplicit[] = {"bInitRetains", "bInCopyCode"};
-
-bool is_implicit(const Name& name) {
-  return ir::same_name(name.text, kImplicit[0]) || ir::same_name(name.text, kImplicit[1]);
-}
-
-// Element number `flat` of the array `at`.
-ir::Place element(const ir::Place& at, const std::vector<ir::Dimension>& dims, ir::TypeId type,
-                  uint64_t flat) {
-  ir::Place one = at;
-  for (size_t d = dims.size(); d-- > 0; flat /= dims[d].count()) {
-    ir::Step index = step_to(ir::StepKind::kIndex);
-    index.constant_index = dims[d].low + static_cast<int64_t>(flat % dims[d].count());
-    one.steps.insert(one.steps.begin() + static_cast<ptrdiff_t>(at.steps.size()), index);
-  }
-  one.type = type;
-  return one;
-}
-
-}  // namespace
 
 void StartCode::run() {
   if (info_.owner == kNoPou) {
@@ -93,8 +70,19 @@ void StartCode::each_element(const ir::Place& at, ir::TypeId id, ir::ConstId ini
     return loop(at, type.dims, 0, type.base, [&](const ir::Place& one) { each(one, value); });
   }
   for (uint64_t i = 0; i < total; ++i) {
-    each(element(at, type.dims, type.base, i), ask<Constants>().listed(init, i));
+    each(element(at, type, i), ask<Constants>().listed(init, i));
   }
+}
+
+ir::Place StartCode::element(const ir::Place& at, const ir::Type& array, uint64_t flat) {
+  ir::Place one = at;
+  for (size_t d = array.dims.size(); d-- > 0; flat /= array.dims[d].count()) {
+    ir::Step index = step_to(ir::StepKind::kIndex);
+    index.constant_index = array.dims[d].low + static_cast<int64_t>(flat % array.dims[d].count());
+    one.steps.insert(one.steps.begin() + static_cast<ptrdiff_t>(at.steps.size()), index);
+  }
+  one.type = array.base;
+  return one;
 }
 
 void StartCode::bind_reference(const ir::Place& at, uint64_t unbound) {
@@ -124,15 +112,17 @@ void StartCode::visit(VarId id) {
       variable.decl == nullptr ? nullptr : ask<Objects>().construction(variable.decl->spec);
   set_line(variable.name.span);
   span_ = variable.name.span;
-  content(variable_place(id), variable.type, spec);
+  const bool late = !variable.retain && ask<GivenValues>().come_late();
+  content(variable_place(id), variable.type, {spec, late ? variable.init : ir::ConstId()});
 }
 
-void StartCode::content(const ir::Place& at, ir::TypeId type, const Spec* spec) {
+void StartCode::content(const ir::Place& at, ir::TypeId type, Written written) {
   if (!ask<Objects>().constructs(type)) return;
   const ir::Kind kind = types()[type].kind;
-  if (kind == ir::Kind::kArray) return elements(at, type, spec);
+  if (kind == ir::Kind::kArray) return elements(at, type, written);
   if (!ir::is_structure(kind)) {
-    return instance(at, type, spec == nullptr ? Range32() : spec->args);
+    const Spec* spec = written.spec;
+    return instance(at, type, spec == nullptr ? Range32() : spec->args, written.values);
   }
   for (uint32_t i = 0; i < types()[type].members.size(); ++i) {
     ir::Place member = at;
@@ -142,22 +132,30 @@ void StartCode::content(const ir::Place& at, ir::TypeId type, const Spec* spec) 
     const bool whole = field != nullptr && field->bit < 0;
     StartCode outside(body_, PouScope());  // it sees what the members' arguments name
     outside.span_ = span_;
-    outside.content(member, member.type,
-                    whole ? outside.ask<Objects>().construction(field->spec) : nullptr);
+    Written inside;
+    if (whole) inside.spec = outside.ask<Objects>().construction(field->spec);
+    if (ask<GivenValues>().come_late()) {
+      inside.values = ask<Constants>().listed(written.values, i);
+      if (!inside.values.valid()) inside.values = types()[type].members[i].init;
+    }
+    outside.content(member, member.type, inside);
   }
 }
 
 // Pump[(1), (2)] has arguments for each element; otherwise all have the same.
-void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec) {
-  const std::vector<ir::Dimension> dims = types()[type].dims;
-  const ir::TypeId base = types()[type].base;
-  const bool written = spec != nullptr && spec->kind == SpecKind::kArray;
-  if (!written || spec->element_args.count == 0) {
-    const Spec* inner = written ? ask<Objects>().construction(spec->element) : nullptr;
-    return loop(at, dims, 0, base, [&](const ir::Place& one) { content(one, base, inner); });
+void StartCode::elements(const ir::Place& at, ir::TypeId id, Written written) {
+  const ir::Type type = types()[id];
+  const ir::TypeId base = type.base;
+  const Spec* spec = written.spec;
+  const bool array = spec != nullptr && spec->kind == SpecKind::kArray;
+  if (!array || spec->element_args.count == 0) {
+    const Spec* inner = array ? ask<Objects>().construction(spec->element) : nullptr;
+    return each_element(at, id, written.values, [&](const ir::Place& one, ir::ConstId values) {
+      content(one, base, {inner, values});
+    });
   }
   uint64_t total = 1;
-  for (const ir::Dimension& dim : dims) total *= dim.count();
+  for (const ir::Dimension& dim : type.dims) total *= dim.count();
   if (total != spec->element_args.count || !types().is_instance(base)) {
     error(DiagnosticCode::kBadConstruction, spec->span,
           std::to_string(spec->element_args.count) + " lists of arguments for " +
@@ -167,7 +165,7 @@ void StartCode::elements(const ir::Place& at, ir::TypeId type, const Spec* spec)
   }
   for (uint32_t i = 0; i < total; ++i) {
     const Expr& list = sema_.tree[sema_.tree.expr_lists[spec->element_args.first + i]];
-    instance(element(at, dims, base, i), base, list.list);
+    instance(element(at, type, i), base, list.list, ask<Constants>().listed(written.values, i));
   }
 }
 
@@ -210,144 +208,6 @@ void StartCode::when(ir::ValueId condition, const std::function<void()>& then) {
   then();
   build_.jump(behind);
   build_.start(behind);
-}
-
-const PouInfo* StartCode::code_of(const PouInfo& block, std::string_view name) const {
-  const uint32_t method = ask<Objects>().find_code(block.number, name).code.method;
-  return method == kNoPou ? nullptr : &sema_.declared.pous[method];
-}
-
-void StartCode::construct(const ir::Place& at, ir::TypeId type, Range32 args,
-                          base::SourceSpan span) {
-  span_ = span;
-  instance(at, type, args);
-}
-
-void StartCode::exit(const ir::Place& at, const PouInfo& block) {
-  if (const PouInfo* method = code_of(block, kFbExit)) call(at, *method, {});
-}
-
-// What leaves, leaves from the outside in; the other way round, what is inside is ready first.
-void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, bool new_ones) {
-  constexpr ir::Scalar kU32 = ir::Scalar::kU32;
-  const PouInfo& block = *sema_.declared.pou_of(type);
-  const PouInfo* init = code_of(block, kFbInit);
-  const PouInfo* reinit = code_of(block, kFbReinit);
-  ir::Place stamp = at;
-  if (block.stamp.valid()) {
-    stamp.steps.push_back(step_to(ir::StepKind::kEnter));
-    stamp.steps.push_back(step_to(ir::StepKind::kMember, resolve(block.stamp).index));
-    stamp.type = resolve(block.stamp).type;
-  }
-  auto is = [&](uint32_t value) {
-    return build_.compare(ir::Op::kEq, kU32, build_.load(stamp, kU32), number(value));
-  };
-  auto set = [&](uint32_t value) { build_.store(stamp, kU32, number(value)); };
-  const uint32_t made = block.stamp.valid() ? ask<Objects>().stamp_of(block) : 0;
-  if (code_of(block, kFbExit) != nullptr) {
-    when(is(ir::kLeavingStamp), [&] {
-      exit(at, block);
-      set(ir::kLeftStamp);
-    });
-  }
-  if (block.start != kNoPou) {
-    info_.callees.push_back(block.start);
-    build_.call_method(sema_.declared.pous[block.start].id, at);
-  }
-  if (init == nullptr && args.count != 0) {
-    error(DiagnosticCode::kBadConstruction, span_,
-          quoted_name(block.decl->name) + " has no FB_Init that takes arguments");
-  }
-  if (!block.stamp.valid()) return;
-  if (new_ones) {
-    when(is(ir::kNewStamp), [&] {
-      if (init != nullptr) call(at, *init, args);
-      set(made);
-    });
-  }
-  if (reinit == nullptr) return;
-  const ir::ValueId now = build_.load(stamp, kU32);
-  when(build_.compare(ir::Op::kLe, kU32, number(ir::kFirstShapeStamp), now), [&] {
-    when(build_.compare(ir::Op::kNe, kU32, now, number(made)), [&] {
-      call(at, *reinit, {});
-      set(made);
-    });
-  });
-}
-
-void StartCode::call(const ir::Place& at, const PouInfo& method, Range32 args) {
-  constexpr ir::Scalar kBool = ir::Scalar::kBool;
-  Expr written;
-  written.kind = ExprKind::kCall;
-  written.list = args;
-  written.span = span_;
-  std::vector<Binding> bindings;
-  if (!bind(written, method, bindings) ||
-      !ask<Arguments>().check_in_outs(written, method, bindings))
-    return;
-  info_.callees.push_back(method.number);
-  ask<Arguments>().evaluate_arguments(written, bindings);
-  if (!sema_.started.change_flag.valid()) return;  // there are errors
-  const ir::Place flag = variable_place(sema_.started.change_flag);
-  const ir::ValueId changed =
-      build_.compare(ir::Op::kNe, ir::Scalar::kU32, build_.load(flag, ir::Scalar::kU32), number(0));
-  for (const Binding& binding : bindings) {
-    ask<Arguments>().pass_input(binding,
-                                ask<Arguments>().argument_place(method, resolve(binding.variable)));
-  }
-  ask<Arguments>().pass_defaults(method, bindings);
-  for (VarId id : method.locals) {
-    const Variable& variable = resolve(id);
-    if (variable.section != VarSection::kInput || !is_implicit(variable.name)) continue;
-    if (!traits_of(types(), variable.type).boolean) continue;
-    // What is made has its initial values, retained variables too.
-    const bool retains = ir::same_name(variable.name.text, kImplicit[0]);
-    build_.store(ask<Arguments>().argument_place(method, variable), kBool,
-                 retains ? build_.constant(kBool, 1) : changed);
-  }
-  build_.call_method(method.id, at);
-}
-
-// bInitRetains and bInCopyCode are given by the system; the others by the declaration.
-bool StartCode::bind(const Expr& call, const PouInfo& method, std::vector<Binding>& bindings) {
-  const std::string name(method.decl->name.text);
-  const std::string of = name + " of " + quoted_name(sema_.declared.pous[method.owner].decl->name);
-  std::vector<VarId> parameters;
-  for (VarId id : method.locals) {
-    const Variable& variable = resolve(id);
-    const bool input =
-        variable.section == VarSection::kInput || variable.section == VarSection::kInOut;
-    if (input && !is_implicit(variable.name)) parameters.push_back(id);
-  }
-  for (uint32_t i = 0; i < call.list.count; ++i) {
-    const Arg& arg = sema_.tree.args[call.list.first + i];
-    if (arg.output) {
-      error(DiagnosticCode::kBadConstruction, arg.span, name + " has no outputs here");
-      return false;
-    }
-    if (!arg.name.empty()) {
-      if (!ask<Arguments>().bind_named(arg, method, bindings)) return false;
-    } else if (i >= parameters.size()) {
-      error(DiagnosticCode::kBadConstruction, arg.span,
-            of + " takes " + std::to_string(parameters.size()) + " arguments");
-      return false;
-    } else if (arg.value.valid()) {
-      bindings.push_back({parameters[i], &arg, {}, {}, {}});
-    }
-  }
-  for (VarId id : parameters) {
-    const Variable& variable = resolve(id);
-    bool given = variable.decl != nullptr && variable.decl->init.valid();
-    for (const Binding& binding : bindings) given = given || binding.variable == id;
-    if (given) continue;
-    error(DiagnosticCode::kBadConstruction, call.span, of + " needs " + quoted_name(variable.name),
-          ir::same_name(name, kFbInit)
-              ? "give it in the declaration: name : Block(" + std::string(variable.name.text) +
-                    " := value);"
-              : "give it an initial value: nobody calls " + name + " with arguments");
-    return false;
-  }
-  return true;
 }
 
 }  // namespace frontend

@@ -310,7 +310,10 @@ void Builder::construct(Pou& pou, Interface& face, const Class* base) {
   std::vector<Variable>& inputs = section(init, Section::kInput).variables;
   inputs.push_back({"bInitRetains", init.result});
   inputs.push_back({"bInCopyCode", init.result});
+  const bool derived = base != nullptr && base->face.constructed;
   std::vector<Variable> own;
+  // FB_Init of the base runs first there, with the arguments that it has parameters for.
+  if (derived && !iec_) own = base->face.construction;
   for (uint32_t n = below(3); n > 0; --n) {
     Variable one{fresh("v"), any_scalar()};
     if (one_in(3)) one.initial = literal(one.type, true);
@@ -326,7 +329,7 @@ void Builder::construct(Pou& pou, Interface& face, const Class* base) {
   }
   for (const Variable& one : own) see(one, false);
   locals(init, 1);
-  if (base != nullptr && base->face.constructed) {
+  if (derived && (iec_ || one_in(3))) {
     std::string given = construction_arguments(base->face.block);
     std::string all = "SUPER^.FB_Init(bInitRetains, bInCopyCode";
     all += given.empty() ? ")" : ", " + given.substr(1);

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "frontend/sema/declarations/unused.h"
+#include "frontend/sema/objects/objects.h"
 #include "frontend/sema/phase.h"
 
 namespace frontend {
@@ -17,12 +18,22 @@ struct OtherAttribute {
 constexpr OtherAttribute kOthers[] = {
     {"pack_mode", "members are aligned",
      "copy members one by one where bytes have to stand in an order"},
-    {"call_after_init", "nothing is called after FB_Init", "call the method in FB_Init, or once"},
-    {"initialize_on_call", "an input that a call leaves out keeps its value",
-     "give the input a value in each call"},
     {"subsequent", "variables lie where the compiler puts them", "use an array or a structure"},
     {"instance-path", "the text stays as it is declared", "give the name as an input"},
 };
+
+// It stands in front of the method and of its block.
+void report_lone_call_after_init(const Phase& phase, const PouInfo& method) {
+  if (method.owner == kNoPou || method.decl->kind != PouKind::kMethod) return;
+  const Tree& tree = phase.sema().tree;
+  const PouDecl& block = *phase.sema().declared.pous[method.owner].decl;
+  const Attribute* own = tree.find_attribute(method.decl->attributes, kCallAfterInit);
+  if (own == nullptr || tree.find_attribute(block.attributes, kCallAfterInit) != nullptr) return;
+  phase.warning(DiagnosticCode::kOtherAttribute, own->name.span,
+                "`call_after_init` has no effect: `" + std::string(block.name.text) +
+                    "` does not have it",
+                "write it in front of the FUNCTION_BLOCK too");
+}
 
 }  // namespace
 
@@ -37,6 +48,7 @@ void report_other_attributes(const Phase& phase) {
                   "`" + std::string(other->name) + "` has no effect: " + other->what,
                   other->instead);
   }
+  for (const PouInfo& pou : phase.sema().declared.pous) report_lone_call_after_init(phase, pou);
 }
 
 }  // namespace frontend

@@ -1,16 +1,19 @@
 // What is declared and never used, or never written.
 #include "frontend/sema/declarations/unused.h"
 
+#include "frontend/sema/objects/objects.h"
 #include "frontend/sema/phase.h"
 
 namespace frontend {
 namespace {
 
 // FB_Init and its kind are called by the system, which asks for no result.
-bool is_called_by_system(const PouInfo& pou) {
+bool is_called_by_system(const Tree& tree, const PouInfo& pou) {
+  if (pou.owner == kNoPou) return false;
   const std::string_view name = pou.decl->name.text;
-  return pou.owner != kNoPou && (ir::same_name(name, "FB_Init") || ir::same_name(name, "FB_Exit") ||
-                                 ir::same_name(name, "FB_Reinit"));
+  return ir::same_name(name, kFbInit) || ir::same_name(name, kFbExit) ||
+         ir::same_name(name, kFbReinit) ||
+         tree.find_attribute(pou.decl->attributes, kCallAfterInit) != nullptr;
 }
 
 // Covers functions and methods; a prototype has no body that could assign.
@@ -23,7 +26,7 @@ void report_unassigned_results(const Phase& phase) {
         pou.owner != kNoPou &&
         (pou.decl->is_abstract ||
          phase.sema().declared.pous[pou.owner].decl->kind == PouKind::kInterface);
-    if (prototype || is_called_by_system(pou) || phase.resolve(pou.result).written) continue;
+    if (prototype || is_called_by_system(phase.sema().tree, pou) || phase.resolve(pou.result).written) continue;
     phase.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
                   "`" + std::string(pou.decl->name.text) + "` never assigns its result",
                   "assign it: `" + std::string(pou.decl->name.text) + " := ...`");

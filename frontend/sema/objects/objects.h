@@ -16,6 +16,9 @@ namespace frontend {
 inline constexpr std::string_view kFbInit = "FB_Init";
 inline constexpr std::string_view kFbExit = "FB_Exit";
 inline constexpr std::string_view kFbReinit = "FB_Reinit";
+// Attributes.
+inline constexpr std::string_view kCallAfterInit = "call_after_init";
+inline constexpr std::string_view kInitializeOnCall = "initialize_on_call";
 using base::DiagnosticCode;
 
 class Objects : public Phase {
@@ -94,6 +97,13 @@ class Objects : public Phase {
   uint32_t add_made_method(uint32_t block, std::string_view name, MadeCode code);
   // What the stamp of an instance becomes: another number for another layout.
   uint32_t stamp_of(const PouInfo& block) const;
+  // With CODESYS and TwinCAT, FB_Init and FB_Exit of a block do not replace those of its bases:
+  // all of them run.
+  bool runs_bases(std::string_view name) const;
+  // What is called after FB_Init and after the values that a declaration gives: methods with
+  // 'call_after_init' of blocks with 'call_after_init', those of bases first. An override stands
+  // for all that it overrides. Numbers in Declarations::pous.
+  std::vector<uint32_t> called_after_init(const PouInfo& block) const;
 
   // --- calls (recursion.cc)
   // How deep the POU may call itself, by its attribute; 0: not declared.

@@ -219,6 +219,7 @@ void Objects::add_stamp(PouInfo& block) {
     auto found = block.code.find(name);
     needed = needed || (found != block.code.end() && found->second.method != kNoPou);
   }
+  needed = needed || !called_after_init(block).empty();
   if (block.stamp.valid() || !needed) return;
   block.stamp = VarId(static_cast<uint32_t>(sema_.declared.variables.size()));
   Variable variable;
@@ -245,6 +246,28 @@ uint32_t Objects::stamp_of(const PouInfo& block) const {
   std::string text;
   for (const std::string& line : lines) text += line + ";";
   return static_cast<uint32_t>(base::hash64(base::as_bytes(text))) | ir::kFirstShapeStamp;
+}
+
+bool Objects::runs_bases(std::string_view name) const {
+  return sema_.options.dialect != Dialect::kIec && !ir::same_name(name, kFbReinit);
+}
+
+std::vector<uint32_t> Objects::called_after_init(const PouInfo& block) const {
+  std::vector<const PouDecl*> from_root;
+  for (uint32_t at = block.number; at != kNoPou; at = sema_.declared.pous[at].base) {
+    from_root.insert(from_root.begin(), sema_.declared.pous[at].decl);
+  }
+  std::vector<uint32_t> methods;
+  for (const PouDecl* decl : from_root) {
+    if (sema_.tree.find_attribute(decl->attributes, kCallAfterInit) == nullptr) continue;
+    for (const PouDecl& member : decl->members) {
+      if (sema_.tree.find_attribute(member.attributes, kCallAfterInit) == nullptr) continue;
+      const uint32_t method = find_code(block.number, member.name.text).code.method;
+      const bool known = std::find(methods.begin(), methods.end(), method) != methods.end();
+      if (method != kNoPou && !known) methods.push_back(method);
+    }
+  }
+  return methods;
 }
 
 void Objects::add_start_program() {
