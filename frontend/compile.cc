@@ -69,9 +69,13 @@ bool fits(const base::SourceMap& sources, uint64_t most, base::Diagnostics& diag
 }
 
 // The library's files come after the project's, so positions stay what they were.
-base::SourceMap with_library(const base::SourceMap& sources) {
+base::SourceMap with_library(const base::SourceMap& sources, Dialect dialect) {
+  const stdlib::LibraryDialects others = dialect == Dialect::kIec
+                                             ? stdlib::LibraryDialects::kVendors
+                                             : stdlib::LibraryDialects::kIec;
   base::SourceMap all = sources;
   for (const stdlib::LibrarySource& library : stdlib::library_sources()) {
+    if (library.dialects == others) continue;
     all.add(std::string(library.name), std::string(library.text));
   }
   return all;
@@ -83,7 +87,7 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
                                       base::Diagnostics& diagnostics) {
   if (!fits(sources, options.max_source_bytes, diagnostics)) return nullptr;
   auto parsed = std::make_unique<Parsed>();
-  parsed->sources = with_library(sources);
+  parsed->sources = with_library(sources, options.dialect);
   parsed->library_file = sources.file_count();
   parse_all(parsed->sources, options, parsed->tree, diagnostics);
   if (has_open_comment(diagnostics)) return nullptr;

@@ -2,8 +2,11 @@
 #
 # A file with lines `(* VARIANT _SUFFIX old=new ... *)` is written once more for each of them, with every
 # `old` replaced by `new` and the suffix after the name of every POU: one source for all types.
-function(embed name text)
-  file(APPEND ${OUT}.tmp "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\"},\n")
+# A suffix `L-` stands in front of the name: LTON. With `vendors` in place of the suffix, names stay, and what is written stands for the plain file in
+# the dialects of vendors.
+function(embed name text dialects)
+  file(APPEND ${OUT}.tmp
+       "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\", LibraryDialects::k${dialects}},\n")
 endfunction()
 
 # Text goes through as one quoted string: it is full of semicolons, which separate CMake's lists.
@@ -17,9 +20,19 @@ function(embed_variant name text variant)
     string(SUBSTRING "${word}" ${at} -1 new)
     string(REPLACE "${old}" "${new}" text "${text}")
   endforeach()
-  string(REGEX REPLACE "(FUNCTION_BLOCK|FUNCTION) ([A-Za-z0-9_]+)" "\\1 \\2${suffix}" text "${text}")
+  if(suffix STREQUAL "vendors")
+    embed("${name}" "${text}" Vendors)
+    return()
+  endif()
+  if(suffix MATCHES "^([A-Z]+)-$")
+    set(named "${CMAKE_MATCH_1}\\2")
+    set(suffix "_${CMAKE_MATCH_1}")
+  else()
+    set(named "\\2${suffix}")
+  endif()
+  string(REGEX REPLACE "(FUNCTION_BLOCK|FUNCTION) ([A-Za-z0-9_]+)" "\\1 ${named}" text "${text}")
   string(TOLOWER "${suffix}" suffix)
-  embed("${name}${suffix}" "${text}")
+  embed("${name}${suffix}" "${text}" All)
 endfunction()
 
 file(WRITE ${OUT}.tmp "#include \"stdlib/sources.h\"\nnamespace stdlib {\nstatic constexpr LibrarySource kSources[] = {\n")
@@ -28,7 +41,11 @@ foreach(source ${SOURCES})
   file(READ ${source} text)
   string(REGEX MATCHALL "\\(\\* VARIANT [^*]*\\*\\)" variants "${text}")
   string(REGEX REPLACE "\\(\\* VARIANT [^*]*\\*\\)\n" "" text "${text}")
-  embed("${name}" "${text}")
+  if(variants MATCHES "VARIANT vendors ")
+    embed("${name}" "${text}" Iec)
+  else()
+    embed("${name}" "${text}" All)
+  endif()
   foreach(variant ${variants})
     string(REGEX REPLACE "\\(\\* VARIANT ([^*]*)\\*\\)" "\\1" variant "${variant}")
     embed_variant("${name}" "${text}" "${variant}")
