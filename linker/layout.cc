@@ -151,7 +151,7 @@ class Builder {
     if (error_) return;
     TypeLayout& layout = layouts_.of[id.index];
     for (const Member& member : types_[id].members) {
-      layout.align = std::max(layout.align, align_of(member));
+      layout.align = std::max(layout.align, align_of(types_[id], member));
     }
     layout.size = static_cast<uint32_t>(align_up(std::max(layout.used, 1u), layout.align));
   }
@@ -168,8 +168,9 @@ class Builder {
   uint32_t size_of(const Member& member) const {
     return member.section == Section::kInOut ? kSlotBytes : layouts_[member.type].size;
   }
-  uint32_t align_of(const Member& member) const {
-    return member.section == Section::kInOut ? kSlotBytes : layouts_[member.type].align;
+  uint32_t align_of(const Type& owner, const Member& member) const {
+    const bool in_out = member.section == Section::kInOut;
+    return ir::member_alignment(owner, in_out ? kSlotBytes : layouts_[member.type].align);
   }
 
   // The block that it extends; invalid: none.
@@ -260,7 +261,9 @@ class Builder {
 
   void place_members(TypeId id, uint32_t capacity) {
     const Type& type = types_[id];
-    const TypeId old = old_of(id);
+    TypeId old = old_of(id);
+    // Packed in another way: it is laid out as if it were new, and its members move.
+    if (old.valid() && base_->types[old].capacity != type.capacity) old = {};
     std::vector<uint32_t>& offsets = layouts_.of[id.index].member_offsets;
     offsets.assign(type.members.size(), 0);
     ir::MemberFinder old_members(base_ != nullptr ? *base_->types : types_, old);
@@ -295,7 +298,7 @@ class Builder {
     uint64_t used = 0;
     for (size_t i = 0; i < types_[id].members.size(); ++i) {
       const Member& member = types_[id].members[i];
-      const uint64_t at = align_up(used, align_of(member));
+      const uint64_t at = align_up(used, align_of(types_[id], member));
       used = at + size_of(member);
       if (used > base::kMaxDataBytes) return too_large(id, used, base::kMaxDataBytes);
       layouts_.of[id.index].member_offsets[i] = static_cast<uint32_t>(at);
@@ -321,7 +324,7 @@ class Builder {
     for (size_t i : added) {
       const Member& member = types_[id].members[i];
       const uint64_t size = size_of(member);
-      const uint64_t align = align_of(member);
+      const uint64_t align = align_of(types_[id], member);
       // Gaps only shrink, so a search for the same size goes on where the last one ended.
       uint64_t& hint = hints.try_emplace({size, align}, floor).first->second;
       std::optional<uint64_t> at =

@@ -89,6 +89,7 @@ struct Spec {
   ExprId low, high;
   base::SlimVector<DimSpec> dims;
   base::SlimVector<VarDecl> fields;
+  Range32 attributes;  // kStruct, kUnion: those in front of the declaration
   base::SlimVector<Enumerator> enumerators;
 };
 

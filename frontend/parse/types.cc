@@ -57,9 +57,11 @@ void Parser::parse_type(Range32 attributes) {
   type_level_ = true;
   decl.spec = parse_spec();
   type_level_ = false;
+  const SpecKind shape = tree_[decl.spec].kind;
+  const bool structure = shape == SpecKind::kStruct || shape == SpecKind::kUnion;
+  if (structure) tree_.specs[decl.spec.index].attributes = attributes;
   if (base.valid()) {
-    const SpecKind shape = tree_[decl.spec].kind;
-    if (shape == SpecKind::kStruct || shape == SpecKind::kUnion) {
+    if (structure) {
       tree_.specs[decl.spec.index].element = base;
     } else {
       note_only(Code::kBadInheritance, extends.span(),

@@ -221,6 +221,9 @@ class TypesVerifier {
     if (is_area(type.kind) && type.kind != Kind::kGlobals && layout.size != 4) {
       return bad(i, "its slot takes " + std::to_string(layout.size) + " bytes, not 4");
     }
+    if (type.capacity > 8 || (type.capacity & (type.capacity - 1)) != 0) {
+      return bad(i, "is packed by " + std::to_string(type.capacity) + ", not by 1, 2, 4 or 8");
+    }
     if (types_.overlaps(TypeId(i))) return check_overlapping(i, limit);
     for (const Member& member : type.members) {
       const bool dword = types_[member.type].kind == Kind::kDword;

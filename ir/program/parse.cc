@@ -139,7 +139,9 @@ class ProgramParser {
         type.base = scope_.type(line);
         break;
       case Kind::kStruct:
-        type.overlap = line.take("overlap");
+      case Kind::kUnion:
+        if (type.kind == Kind::kStruct) type.overlap = line.take("overlap");
+        if (line.take("packed")) type.capacity = static_cast<uint32_t>(line.number(8));
         break;
       case Kind::kArray:
         type.base = scope_.type(line);

@@ -97,7 +97,9 @@ class ProgramPrinter {
       case Kind::kReferenceTo:
         return word + " " + names_.type(type.base);
       case Kind::kStruct:
-        return word + (type.overlap ? " overlap" : "");
+      case Kind::kUnion:
+        return word + (type.overlap && type.kind == Kind::kStruct ? " overlap" : "") +
+               (type.capacity != 0 ? " packed " + std::to_string(type.capacity) : "");
       case Kind::kArray:
         return word + " " + names_.type(type.base) + " [" + dimensions(type) + "]";
       case Kind::kFunctionBlock:

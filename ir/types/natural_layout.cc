@@ -74,7 +74,8 @@ class Builder {
     for (const Member& member : types_[id].members) {
       const bool slot = member.section == Section::kInOut || types_.is_instance(member.type);
       const uint32_t size = slot ? kSlotBytes : of(member.type).size;
-      const uint32_t align = slot ? kSlotBytes : layouts_[member.type].align;
+      const uint32_t align =
+          member_alignment(types_[id], slot ? kSlotBytes : layouts_[member.type].align);
       const uint32_t at =
           types_.overlaps(id) ? member.address.bit_offset / 8 : align_up(layout.used, align);
       layout.member_offsets.push_back(at);

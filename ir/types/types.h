@@ -145,7 +145,9 @@ struct Type {
   TypeId base;       // see Kind
   int64_t low = 0;   // subrange
   int64_t high = 0;
-  uint32_t capacity = 0;  // strings, in characters
+  // Strings, in characters. Structures and unions with {attribute 'pack_mode'}: how many bytes a
+  // member is aligned to at most, 1, 2, 4 or 8 (member_alignment()); 0: as its type.
+  uint32_t capacity = 0;
   std::vector<Dimension> dims;
   std::vector<Member> members;
   // The members overlap: all at offset 0, or where `address` (no area, only a bit offset)
@@ -161,6 +163,12 @@ struct Type {
   // The elements of an array, over all dimensions.
   uint64_t element_count() const;
 };
+
+// What a member is aligned to whose type is aligned to `align`.
+inline uint32_t member_alignment(const Type& structure, uint32_t align) {
+  const bool packed = structure.capacity != 0 && structure.capacity < align;
+  return packed ? structure.capacity : align;
+}
 
 class TypeTable {
  public:

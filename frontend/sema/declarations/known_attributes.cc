@@ -1,10 +1,12 @@
 // Attributes of other tools that change what a program does, and do not here.
 #include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "frontend/sema/declarations/unused.h"
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/phase.h"
+#include "frontend/sema/types/types.h"
 
 namespace frontend {
 namespace {
@@ -16,8 +18,6 @@ struct OtherAttribute {
 };
 
 constexpr OtherAttribute kOthers[] = {
-    {"pack_mode", "members are aligned",
-     "copy members one by one where bytes have to stand in an order"},
     {"subsequent", "variables lie where the compiler puts them", "use an array or a structure"},
     {"instance-path", "the text stays as it is declared", "give the name as an input"},
 };
@@ -35,6 +35,34 @@ void report_lone_call_after_init(const Phase& phase, const PouInfo& method) {
                 "write it in front of the FUNCTION_BLOCK too");
 }
 
+// Where the attributes of packed structures stand, in order.
+std::vector<uint32_t> packing_places(const Tree& tree) {
+  std::vector<uint32_t> places;
+  for (const Spec& spec : tree.specs) {
+    if (packing_of(tree, spec.attributes) == 0) continue;
+    for (uint32_t i = 0; i < spec.attributes.count; ++i) {
+      places.push_back(tree.attributes[spec.attributes.first + i].name.span.begin.offset);
+    }
+  }
+  std::ranges::sort(places);
+  return places;
+}
+
+void report_idle_packing(const Phase& phase) {
+  const Tree& tree = phase.sema().tree;
+  const std::vector<uint32_t> packing = packing_places(tree);
+  uint32_t last = 0;  // one that is joined to others is there twice
+  for (const Attribute& attribute : tree.attributes) {
+    const uint32_t at = attribute.name.span.begin.offset;
+    if (!ir::same_name(kPackMode, attribute.name.text) || at == last) continue;
+    if (std::ranges::binary_search(packing, at)) continue;
+    last = at;
+    phase.warning(DiagnosticCode::kOtherAttribute, attribute.name.span,
+                  "`pack_mode` has no effect here: members are aligned",
+                  "write it in front of a STRUCT or UNION, with 0, 1, 2, 4 or 8");
+  }
+}
+
 }  // namespace
 
 void report_other_attributes(const Phase& phase) {
@@ -48,6 +76,7 @@ void report_other_attributes(const Phase& phase) {
                   "`" + std::string(other->name) + "` has no effect: " + other->what,
                   other->instead);
   }
+  report_idle_packing(phase);
   for (const PouInfo& pou : phase.sema().declared.pous) report_lone_call_after_init(phase, pou);
 }
 

@@ -54,6 +54,15 @@ std::vector<std::string> old_names_of_bits(const std::vector<std::string>& names
 
 }  // namespace
 
+uint32_t packing_of(const Tree& tree, Range32 attributes) {
+  const Attribute* attribute = tree.find_attribute(attributes, kPackMode);
+  if (attribute == nullptr) return 0;
+  for (std::string_view mode : {"1", "2", "4", "8"}) {
+    if (attribute->value == mode) return static_cast<uint32_t>(mode[0] - '0');
+  }
+  return attribute->value == "0" ? 1 : 0;
+}
+
 // A structure on its way into the type table.
 struct Types::StructBuild {
   ir::Type type;
@@ -69,6 +78,7 @@ TypeUse Types::resolve_struct(SpecId id, const Spec& spec) {
   StructBuild build;
   build.type.kind = spec.kind == SpecKind::kUnion ? ir::Kind::kUnion : ir::Kind::kStruct;
   build.type.overlap = spec.kind == SpecKind::kUnion || spec.overlap;
+  build.type.capacity = packing_of(sema_.tree, spec.attributes);
   build.type.name = sema_.facts.of(scope_, id).name.text;
   bool good = !spec.element.valid() || add_base(build, spec);
   for (const VarDecl& field : spec.fields) good = add_field(build, field) && good;
@@ -101,6 +111,7 @@ bool Types::add_base(StructBuild& build, const Spec& spec) {
     return false;
   }
   build.type.members = sema_.program.types[base.type].members;
+  if (build.type.capacity == 0) build.type.capacity = sema_.program.types[base.type].capacity;
   build.names = sema_.declared.structures[base.type];
   return true;
 }

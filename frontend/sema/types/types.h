@@ -6,6 +6,11 @@
 
 namespace frontend {
 
+inline constexpr std::string_view kPackMode = "pack_mode";  // an attribute
+// ir::Type::capacity of a structure with these attributes. 0: it is not packed, or the value is no
+// pack mode.
+uint32_t packing_of(const Tree& tree, Range32 attributes);
+
 class Types : public Phase {
  public:
   using Phase::Phase;
