@@ -42,6 +42,11 @@ std::optional<ConditionProblem> Conditions::take(std::string_view inside, base::
   } else if (active() && reader.is_word("error")) {
     reader.next();
     problem_ = {DiagnosticCode::kErrorPragma, base::printable(reader.piece()), {}};
+  } else if (active() && reader.is_word("warning")) {
+    reader.next();
+    if (reader.kind() == PragmaReader::Kind::kText) {
+      problem_ = {DiagnosticCode::kWrittenWarning, base::printable(reader.piece()), {}};
+    }
   }
   return std::move(problem_);
 }

@@ -102,6 +102,19 @@ ir::Place Assignments::assignment_place(ExprId id, const Expr& expr) {
   return to ? to->place : temporary_place(infer(id).type);
 }
 
+// {attribute 'no_assign'} in front of a block.
+bool Assignments::refuse_copy(ir::TypeId type, base::SourceSpan span) {
+  while (types()[type].kind == ir::Kind::kArray) type = types()[type].base;
+  const PouInfo* block = types().is_instance(type) ? sema_.declared.pou_of(type) : nullptr;
+  if (block == nullptr || tree_.find_attribute(block->decl->attributes, "no_assign") == nullptr) {
+    return false;
+  }
+  error(DiagnosticCode::kNotAssignable, span,
+        "instances of `" + sema_.report.type_text(type) + "` cannot be assigned: 'no_assign'",
+        "pass a REFERENCE TO it, or copy the variables that matter");
+  return true;
+}
+
 void Assignments::assign_aggregate(const Target& to, ExprId value) {
   const Expr& expr = tree_[value];
   const bool held = ask<Pools>().holds_instance(to.type);
@@ -112,6 +125,7 @@ void Assignments::assign_aggregate(const Target& to, ExprId value) {
           "copy the variables that matter one by one");
     return;
   }
+  if (held && refuse_copy(to.type, expr.span)) return;
   if (list) {
     ir::ConstId init = ask<Constants>().initial_value(value, to.type, {}, Known::kByCall);
     if (init.valid()) build_.init(to.place, init);

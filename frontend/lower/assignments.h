@@ -14,6 +14,7 @@ class Assignments : public BodyPhase {
 
   void assign(const Stmt& stmt);
   std::optional<Target> assign_value(ExprId left, ExprId right, base::SourceSpan span);
+  bool refuse_copy(ir::TypeId type, base::SourceSpan span);
   void assign_aggregate(const Target& target, ExprId value);
   // copy_instance.cc: all that an instance, or a value with instances inside, holds.
   void copy_held(const ir::Place& to, const ir::Place& from, ir::TypeId type);

@@ -11,6 +11,8 @@
 #include "frontend/sema/calls/calls.h"
 #include "frontend/sema/calls/standard_calls.h"
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/declarations/unused.h"
+#include "frontend/sema/objects/objects.h"
 
 namespace frontend {
 namespace {
@@ -79,6 +81,7 @@ CallResult CallCode::call_function(const Expr& call, const Callee& callee, bool 
               ask<Arguments>().check_in_outs(call, function, bindings) &&
               ask<Arguments>().check_given(call, function, bindings);
   if (!good) return result;
+  warn_about_use(call, function);
   Receiver receiver;
   if (method) {
     receiver = ask<MethodCode>().receiver_of(tree_[call.operand]);
@@ -102,6 +105,21 @@ CallResult CallCode::call_function(const Expr& call, const Callee& callee, bool 
     return ask<Arguments>().argument_place(function, variable);
   });
   return result;
+}
+
+void CallCode::warn_about_use(const Expr& call, const PouInfo& callee) {
+  report_obsolete(*this, callee, call.span);
+  if (callee.owner == kNoPou || tree_[call.operand].kind != ExprKind::kMember) return;
+  const std::string_view name = callee.decl->name.text;
+  const bool construction = ir::same_name(name, kFbInit) || ir::same_name(name, kFbExit);
+  const bool own = ir::same_name(name, info_.decl->name.text);
+  if (!construction || !own || !ask<Objects>().runs_bases(name)) return;
+  if (!ask<Objects>().is_super(tree_[tree_[call.operand].operand])) return;
+  const bool init = ir::same_name(name, kFbInit);
+  warning(DiagnosticCode::kBaseRunsTwice, call.span,
+          std::string(name) + " of the base runs once more: " +
+              (init ? "it has run before this one" : "it runs after this one"),
+          "remove the call");
 }
 
 // Warns when the result of a function that only computes is not used.

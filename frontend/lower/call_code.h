@@ -22,6 +22,7 @@ class CallCode : public BodyPhase {
  private:
   void call_instance(const Expr& call, uint32_t pou);
   void call_base(const Expr& call, uint32_t pou);
+  void warn_about_use(const Expr& call, const PouInfo& callee);
   void check_result_use(const Expr& call);
   ir::ValueId emit_bound(const Expr& call, bool upper);
 };

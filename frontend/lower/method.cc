@@ -87,13 +87,25 @@ CallResult MethodCode::get_property(uint32_t getter, Receiver receiver) {
   return result_of(accessor);
 }
 
+// After an error.
+CallResult MethodCode::nothing_read(ir::TypeId type) {
+  CallResult result;
+  if (types().is_scalar(type)) result.value = code_.zero(type);
+  result.place = temporary_place(type);
+  return result;
+}
+
 CallResult MethodCode::read_property(ExprId id) {
   const Expr& expr = tree_[id];
   const MemberCode& code = property_code(id);
   if (code.getter == kNoPou) {
     error(DiagnosticCode::kPropertyAccess, expr.name.span,
           quoted_name(expr.name) + " has no GET and cannot be read");
-    return {code_.zero(infer(id).type), temporary_place(infer(id).type)};
+    return nothing_read(infer(id).type);
+  }
+  if (ask<Objects>().has_own_access(code) &&
+      !ask<Objects>().check_access(sema_.declared.pous[code.getter], expr.name)) {
+    return nothing_read(infer(id).type);
   }
   Receiver receiver = receiver_of(expr);
   set_line(expr.span);

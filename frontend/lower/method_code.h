@@ -18,6 +18,7 @@ class MethodCode : public BodyPhase {
   CallResult result_of(const PouInfo& callee);
   void bare_call(ExprId id);
   const MemberCode& property_code(ExprId id);
+  CallResult nothing_read(ir::TypeId type);
   CallResult get_property(uint32_t getter, Receiver receiver);
   CallResult read_property(ExprId id);
   std::optional<Target> property_target(ExprId id);

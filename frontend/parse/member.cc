@@ -102,6 +102,14 @@ bool Parser::at_accessor() const {
          next != TokenKind::kLeftBracket && next != TokenKind::kCaret && next != TokenKind::kEqual;
 }
 
+// GET PRIVATE: for others it is closed, whatever the property says. Elsewhere the words are names.
+void Parser::parse_accessor_access(PouDecl& accessor) {
+  const TokenKind next = next_kind();
+  const bool word = is_access(kind()) && next != TokenKind::kAssign && next != TokenKind::kDot &&
+                    next != TokenKind::kLeftParen && next != TokenKind::kLeftBracket;
+  if (word) accessor.access = access_of(take().kind);
+}
+
 // One GET or SET; false when there is none. Accessors of this property begin at `first`.
 bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
   if (accept(TokenKind::kSemicolon)) return true;
@@ -114,7 +122,10 @@ bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
   TokenKind end = kind() == TokenKind::kSet ? TokenKind::kEndSet : TokenKind::kEndGet;
   if (kind() == TokenKind::kSet) accessor.kind = PouKind::kSetter;
   const Token opening = *current_;
-  if (explicit_accessor) take();
+  if (explicit_accessor) {
+    take();
+    parse_accessor_access(accessor);
+  }
   in_property_ = true;
   ++open_[static_cast<uint8_t>(end)];
   parse_pou_variables(accessor);

@@ -320,6 +320,8 @@ struct PouScope {
 
   const PouInfo* pou = nullptr;
   Meaning* meaning = nullptr;  // of its own, if the POU is an instance
+  // Of declarations in a list of globals that others see as `List.name` only: their own list.
+  std::string_view list;
 };
 
 }  // namespace frontend

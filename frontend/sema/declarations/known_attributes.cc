@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/diagnostics_render.h"
 #include "frontend/sema/declarations/unused.h"
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/phase.h"
@@ -63,7 +64,26 @@ void report_idle_packing(const Phase& phase) {
   }
 }
 
+void report_obsolete_instances(const Phase& phase) {
+  const ir::TypeTable& types = phase.sema().program.types;
+  for (const Variable& variable : phase.sema().declared.variables) {
+    if (variable.decl == nullptr || variable.hidden || !types.contains(variable.type)) continue;
+    ir::TypeId type = variable.type;
+    while (types[type].kind == ir::Kind::kArray) type = types[type].base;
+    const PouInfo* block = types.is_instance(type) ? phase.sema().declared.pou_of(type) : nullptr;
+    if (block != nullptr) report_obsolete(phase, *block, variable.name.span);
+  }
+}
+
 }  // namespace
+
+void report_obsolete(const Phase& phase, const PouInfo& pou, base::SourceSpan span) {
+  const Attribute* found = phase.sema().tree.find_attribute(pou.decl->attributes, "obsolete");
+  if (found == nullptr) return;
+  std::string text = "`" + std::string(pou.decl->name.text) + "` is obsolete";
+  if (!found->value.empty()) text += ": " + base::printable(found->value);
+  phase.warning(DiagnosticCode::kObsolete, span, std::move(text));
+}
 
 void report_other_attributes(const Phase& phase) {
   for (const Attribute& attribute : phase.sema().tree.attributes) {
@@ -77,6 +97,7 @@ void report_other_attributes(const Phase& phase) {
                   other->instead);
   }
   report_idle_packing(phase);
+  report_obsolete_instances(phase);
   for (const PouInfo& pou : phase.sema().declared.pous) report_lone_call_after_init(phase, pou);
 }
 

@@ -22,6 +22,10 @@ VarId Variables::find_variable(const Name& name) {
     VarId id = ask<Objects>().find_variable(pou.owner != kNoPou ? pou.owner : pou.base, name.text);
     if (id.valid()) return id;
   }
+  if (auto own = sema_.declared.lists.find(scope_.list); own != sema_.declared.lists.end()) {
+    auto found = own->second.names.find(name.text);
+    if (found != own->second.names.end()) return found->second;
+  }
   return sema_.namespaces.find_global(name);
 }
 
@@ -42,7 +46,9 @@ const Variable& Variables::resolve_now(VarId id) {
   }
   variable.progress = Progress::kBusy;
   ++sema_.facts.depth;
-  Variables(sema_, sema_.declared.scope_of(variable.pou)).resolve_variable(id);
+  PouScope scope = sema_.declared.scope_of(variable.pou);
+  if (variable.pou == kNoPou) scope.list = variable.list;
+  Variables(sema_, scope).resolve_variable(id);
   --sema_.facts.depth;
   variable.progress = Progress::kDone;
   return variable;

@@ -174,11 +174,18 @@ VarId Objects::value_of(const PouInfo& accessor) const {
 }
 
 // Read or written: lowering knows which, and checks that there is GET or SET.
+bool Objects::has_own_access(const MemberCode& code) const {
+  if (code.getter == kNoPou || code.setter == kNoPou) return false;
+  return sema_.declared.pous[code.getter].decl->access !=
+         sema_.declared.pous[code.setter].decl->access;
+}
+
 Note Objects::infer_property(const Name& name, const Found& found) {
   const bool readable = found.code.getter != kNoPou;
   if (!readable && found.code.setter == kNoPou) return {};  // said where it is declared
   const PouInfo& accessor = sema_.declared.pous[readable ? found.code.getter : found.code.setter];
-  if (!check_access(accessor, name)) return {};
+  // Where GET and SET differ, the code that reads or writes is checked.
+  if (!has_own_access(found.code) && !check_access(accessor, name)) return {};
   const VarId value = value_of(accessor);
   if (!value.valid()) return {};  // said where it is declared
   Note note;

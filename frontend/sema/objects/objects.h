@@ -80,6 +80,8 @@ class Objects : public Phase {
   Callee itself(const Expr& head);     // a function or method inside of itself
   Note infer_member(const Expr& expr, uint32_t owner, Note note);
   Note infer_property(const Name& name, const Found& found);
+  // Do GET and SET of a property say who may use them, each for itself?
+  bool has_own_access(const MemberCode& code) const;
   // What an accessor gives, or is given: it has the property's name. Invalid: it has no type.
   VarId value_of(const PouInfo& accessor) const;
 
