@@ -155,7 +155,8 @@ bool Conditions::query(PragmaReader& reader) {
   if (problem_) return false;
   expect(reader, '(');
   bool value = false;
-  if (ir::same_name(function, "defined")) {
+  const bool project = ir::same_name(function, "project_defined");  // all defines are the project's
+  if (project || ir::same_name(function, "defined")) {
     value = query_defined(reader);
   } else if (ir::same_name(function, "hasvalue")) {
     const std::string* value_here = value_of(take_piece(reader, "the name of a define"));

@@ -80,22 +80,25 @@ bool ForCode::for_head(const Stmt& stmt, ForLoop& loop) {
   auto to = target(stmt.target);
   if (!to) return false;
   Traits traits = traits_of(types(), to->type);
-  bool bits = traits.bits && sema_.options.dialect != Dialect::kIec;
-  if (to->bit_size != 0 || to->character.valid() || (!traits.integer && !bits)) {
+  const bool iec = sema_.options.dialect == Dialect::kIec;
+  const bool enumeration = traits.enumeration && !iec;  // it counts through the numbers
+  const bool counts = traits.integer || enumeration || (traits.bits && !iec);
+  if (to->bit_size != 0 || to->character.valid() || !counts) {
     error(DiagnosticCode::kBadLoopVariable, tree_[stmt.target].span,
           "a FOR variable of `" + sema_.report.type_text(to->type) + "`",
           "use an integer variable");
     return false;
   }
   loop.variable = to->place;
-  loop.type = without_range(types(), to->type);
+  loop.type = enumeration ? types()[to->type].base : without_range(types(), to->type);
   loop.machine = scalar(loop.type);
   loop.limits = limits_of(loop.machine);
   const ir::Type& declared = types()[to->type];
   if (declared.kind == ir::Kind::kSubrange) loop.limits = {declared.low, declared.high};
   ir::ValueId from = value(stmt.from, to->type);
   const bool wide = ir::scalar_size(loop.machine) < 4 && infer(stmt.to).width == Width::kWide;
-  const ir::TypeId bound = wide ? elementary(ir::Kind::kDint) : loop.type;
+  const ir::TypeId own = enumeration ? to->type : loop.type;
+  const ir::TypeId bound = wide ? elementary(ir::Kind::kDint) : own;
   loop.to = value(stmt.to, bound);
   loop.bound = scalar(bound);
   if (infer(stmt.to).type.valid() && infer(stmt.to).constant) {

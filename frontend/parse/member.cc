@@ -3,6 +3,15 @@
 #include "frontend/parse/token_sets.h"
 
 namespace frontend {
+namespace {
+
+// GET, PRIVATE and the like are names where this follows.
+bool names_something(TokenKind next) {
+  return next == TokenKind::kAssign || next == TokenKind::kDot || next == TokenKind::kLeftParen ||
+         next == TokenKind::kLeftBracket || next == TokenKind::kCaret || next == TokenKind::kEqual;
+}
+
+}  // namespace
 
 bool Parser::takes_members(PouKind kind) {
   return kind == PouKind::kFunctionBlock || kind == PouKind::kProgram || kind == PouKind::kClass ||
@@ -97,17 +106,7 @@ void Parser::parse_property(PouDecl& owner, Range32 attributes) {
 
 bool Parser::at_accessor() const {
   if (kind() != TokenKind::kGet && kind() != TokenKind::kSet) return false;
-  TokenKind next = next_kind();
-  return next != TokenKind::kAssign && next != TokenKind::kDot && next != TokenKind::kLeftParen &&
-         next != TokenKind::kLeftBracket && next != TokenKind::kCaret && next != TokenKind::kEqual;
-}
-
-// GET PRIVATE: for others it is closed, whatever the property says. Elsewhere the words are names.
-void Parser::parse_accessor_access(PouDecl& accessor) {
-  const TokenKind next = next_kind();
-  const bool word = is_access(kind()) && next != TokenKind::kAssign && next != TokenKind::kDot &&
-                    next != TokenKind::kLeftParen && next != TokenKind::kLeftBracket;
-  if (word) accessor.access = access_of(take().kind);
+  return !names_something(next_kind());
 }
 
 // One GET or SET; false when there is none. Accessors of this property begin at `first`.
@@ -124,7 +123,8 @@ bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
   const Token opening = *current_;
   if (explicit_accessor) {
     take();
-    parse_accessor_access(accessor);
+    const bool access = is_access(kind()) && !names_something(next_kind());
+    if (access) accessor.access = access_of(take().kind);
   }
   in_property_ = true;
   ++open_[static_cast<uint8_t>(end)];

@@ -314,7 +314,6 @@ class Parser {
   void parse_member(PouDecl& owner, Range32 attributes);
   void parse_property(PouDecl& owner, Range32 attributes);
   bool at_accessor() const;
-  void parse_accessor_access(PouDecl& accessor);
   bool parse_accessor(const PouDecl& head, PouDecl& owner, size_t first);
 
   // --- configuration.cc

@@ -26,7 +26,8 @@ void report_unassigned_results(const Phase& phase) {
         pou.owner != kNoPou &&
         (pou.decl->is_abstract ||
          phase.sema().declared.pous[pou.owner].decl->kind == PouKind::kInterface);
-    if (prototype || is_called_by_system(phase.sema().tree, pou) || phase.resolve(pou.result).written) continue;
+    if (prototype || is_called_by_system(phase.sema().tree, pou)) continue;
+    if (phase.resolve(pou.result).written) continue;
     phase.warning(DiagnosticCode::kResultNeverAssigned, pou.decl->name.span,
                   "`" + std::string(pou.decl->name.text) + "` never assigns its result",
                   "assign it: `" + std::string(pou.decl->name.text) + " := ...`");
