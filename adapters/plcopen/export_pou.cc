@@ -100,6 +100,13 @@ void Writer::body(Node owner, const Pou& pou, const std::string& path) {
   put_body(node, pieces(pou.span, head_end(pou)).body, list, pou.diagram, path);
 }
 
+void Writer::put_access(Node interface, frontend::Access access) {
+  if (const char* word = access_word(access)) {
+    data(interface, "accessmodifiers").append_child("AccessModifiers").append_attribute(word) =
+        "true";
+  }
+}
+
 void Writer::members(Node owner, const Pou& pou) {
   const std::string path(pou.name.text);
   for (size_t i = 0; i < pou.members.size(); ++i) {
@@ -121,16 +128,18 @@ void Writer::members(Node owner, const Pou& pou) {
     Node head = node.append_child("interface");
     put_type(head.append_child("returnType"), member.result);
     put_attributes(head, member.attributes);
-    if (const char* access = access_word(member.access)) {
-      data(head, "accessmodifiers").append_child("AccessModifiers").append_attribute(access) =
-          "true";
-    }
+    const bool both = i + 1 < pou.members.size() && is_property(pou.members[i + 1].kind) &&
+                      base::same_name(pou.members[i + 1].name.text, name);
+    const bool own = both && pou.members[i + 1].access != member.access;
+    if (!own) put_access(head, member.access);
     for (size_t k = i; k < pou.members.size() && k < i + 2; ++k) {
       const Pou& accessor = pou.members[k];
       if (!is_property(accessor.kind) || !base::same_name(accessor.name.text, name)) break;
       const bool get = accessor.kind == PouKind::kGetter;
       Node inner = node.append_child(get ? "GetAccessor" : "SetAccessor");
-      put_lists(inner.append_child("interface"), accessor.blocks);
+      Node inside = inner.append_child("interface");
+      put_lists(inside, accessor.blocks);
+      if (own) put_access(inside, accessor.access);
       if (pou.kind != PouKind::kInterface) body(inner, accessor, path + "." + name);
     }
   }

@@ -3,6 +3,7 @@
 
 #include "adapters/plcopen/writer.h"
 #include "frontend/lex/lexer.h"
+#include "frontend/parse/token_sets.h"
 
 namespace plcopen {
 
@@ -117,11 +118,13 @@ Writer::Pieces Writer::pieces(base::SourceSpan span, base::SourcePos head_end) c
   if (tokens[last].kind == TokenKind::kSemicolon && last > 0) --last;
   size_t body_from = 0;  // bytes
   size_t at = 0;
+  const bool accessor = tokens[0].kind == TokenKind::kGet || tokens[0].kind == TokenKind::kSet;
   auto in_head = [&](const Token& token) {
     const bool sign = token.kind == TokenKind::kSemicolon || token.kind == TokenKind::kColon;
-    const bool accessor = token.kind == TokenKind::kGet || token.kind == TokenKind::kSet;
+    const bool access = accessor && at == 1 && frontend::is_access(token.kind) &&
+                        !frontend::follows_a_name(tokens[at + 1].kind);
     return span.begin.offset + token.begin < head_end.offset || (sign && at > 0) ||
-           (accessor && at == 0);
+           (accessor && at == 0) || access;
   };
   for (; at < last && in_head(tokens[at]); ++at) {
     body_from = tokens[at].begin + tokens[at].length;

@@ -47,7 +47,9 @@ std::string method(Node node, Reporter& report) {
 
 std::string accessor(Node node, const char* word, const std::string& name, Reporter& report) {
   Vendor vendor = vendor_data(node, report);
-  return word + std::string("\n") + head(node, "", name, vendor, report) +
+  std::string first = word + std::string(" ") + vendor.access;
+  first.erase(first.find_last_not_of(' ') + 1);
+  return first + "\n" + head(node, "", name, vendor, report) +
          xml::indented(body_text(node, std::string(word) + " of " + name, report), kIndent) +
          "END_" + word + "\n";
 }

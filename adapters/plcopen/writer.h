@@ -78,6 +78,7 @@ class Writer {
   void pou(Node parent, const Pou& pou);
   void interface(Node owner, const Pou& pou, const char* kind);
   void members(Node owner, const Pou& pou);
+  void put_access(Node interface, frontend::Access access);
   void body(Node owner, const Pou& pou, const std::string& path);
   void put_body(Node body, const std::string& text, bool list, uint32_t diagram,
                 const std::string& path);

@@ -1,6 +1,7 @@
 #include "frontend/format/diagrams.h"
 #include "frontend/format/outliner.h"
 #include "frontend/format/spacing.h"
+#include "frontend/parse/token_sets.h"
 
 namespace frontend::formatting {
 
@@ -162,7 +163,11 @@ void Outliner::named_group(TokenKind end, BlockKind block) {
 
 void Outliner::property_part(TokenKind end) {
   soft_keyword(at_);
-  add_head(at_ + 1);
+  uint32_t behind = at_ + 1;
+  if (is_access(text_.kind(behind)) && !follows_a_name(text_.kind(behind + 1))) {
+    soft_keyword(behind++);
+  }
+  add_head(behind);
   push(end, BlockKind::kBody, top().inner + 1);
 }
 

@@ -3,15 +3,6 @@
 #include "frontend/parse/token_sets.h"
 
 namespace frontend {
-namespace {
-
-// GET, PRIVATE and the like are names where this follows.
-bool names_something(TokenKind next) {
-  return next == TokenKind::kAssign || next == TokenKind::kDot || next == TokenKind::kLeftParen ||
-         next == TokenKind::kLeftBracket || next == TokenKind::kCaret || next == TokenKind::kEqual;
-}
-
-}  // namespace
 
 bool Parser::takes_members(PouKind kind) {
   return kind == PouKind::kFunctionBlock || kind == PouKind::kProgram || kind == PouKind::kClass ||
@@ -106,7 +97,7 @@ void Parser::parse_property(PouDecl& owner, Range32 attributes) {
 
 bool Parser::at_accessor() const {
   if (kind() != TokenKind::kGet && kind() != TokenKind::kSet) return false;
-  return !names_something(next_kind());
+  return !follows_a_name(next_kind());
 }
 
 // One GET or SET; false when there is none. Accessors of this property begin at `first`.
@@ -123,7 +114,7 @@ bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
   const Token opening = *current_;
   if (explicit_accessor) {
     take();
-    const bool access = is_access(kind()) && !names_something(next_kind());
+    const bool access = is_access(kind()) && !follows_a_name(next_kind());
     if (access) accessor.access = access_of(take().kind);
   }
   in_property_ = true;

@@ -202,3 +202,26 @@ echo "$count programs went there and back by TC6"
 there 61131-10 "$golden"/il/*.st "$golden"/ladder/*.st "$golden"/fbd/*.st "$golden"/timing/*.st "$golden"/run/*.st
 [ "$count" -ge 70 ] || fail "only $count programs were compared by 61131-10"
 echo "$count programs went there and back by 61131-10"
+
+# GET and SET with an access of their own keep it, and a packed structure stays packed.
+cat >own.st <<'X'
+FUNCTION_BLOCK F
+VAR n : INT; END_VAR
+  PROPERTY P : INT
+    GET PROTECTED
+      P := n;
+    END_GET
+    SET PRIVATE
+    VAR k : INT; END_VAR
+      k := P;
+      n := k;
+    END_SET
+  END_PROPERTY
+END_FUNCTION_BLOCK
+{attribute 'pack_mode' := '1'}
+TYPE T : STRUCT a : BYTE; d : DINT; END_STRUCT END_TYPE
+X
+expect 0 stc export own.st -o own.xml --without-sources
+expect 0 stc import own.xml -o own
+[ "$(grep -c 'GET PROTECTED\|SET PRIVATE' own/F.st)" -eq 2 ] || fail "the access of an accessor"
+grep -q "pack_mode' := '1'" own/*.st || fail "pack_mode"

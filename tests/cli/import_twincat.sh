@@ -60,6 +60,9 @@ END_VAR
     <Property Name="Speed" Id="{8}">
       <Declaration><![CDATA[PROPERTY PUBLIC Speed : LREAL]]></Declaration>
       <Get Name="Get" Id="{9}"><Declaration><![CDATA[]]></Declaration><Implementation><ST><![CDATA[Speed := speed_;]]></ST></Implementation></Get>
+      <Set Name="Set" Id="{10}"><Declaration><![CDATA[PRIVATE VAR
+END_VAR
+]]></Declaration><Implementation><ST><![CDATA[speed_ := Speed;]]></ST></Implementation></Set>
     </Property>
 X
 object plc/POUs/Drives/FB_Base.TcPOU POU FB_Base <<'X'
