@@ -70,12 +70,9 @@ bool fits(const base::SourceMap& sources, uint64_t most, base::Diagnostics& diag
 
 // The library's files come after the project's, so positions stay what they were.
 base::SourceMap with_library(const base::SourceMap& sources, Dialect dialect) {
-  const stdlib::LibraryDialects others = dialect == Dialect::kIec
-                                             ? stdlib::LibraryDialects::kVendors
-                                             : stdlib::LibraryDialects::kIec;
   base::SourceMap all = sources;
   for (const stdlib::LibrarySource& library : stdlib::library_sources()) {
-    if (library.dialects == others) continue;
+    if (!stdlib::is_of_dialect(library, dialect == Dialect::kIec)) continue;
     all.add(std::string(library.name), std::string(library.text));
   }
   return all;

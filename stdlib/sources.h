@@ -17,4 +17,9 @@ struct LibrarySource {
 };
 std::span<const LibrarySource> library_sources();
 
+// Does the source belong to the library of the standard's own dialect, or else of the others?
+constexpr bool is_of_dialect(const LibrarySource& source, bool iec) {
+  return source.dialects != (iec ? LibraryDialects::kVendors : LibraryDialects::kIec);
+}
+
 }  // namespace stdlib

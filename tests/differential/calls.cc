@@ -103,6 +103,7 @@ void Builder::read_library() {
   frontend::Tree tree;
   uint32_t file = 0;
   for (const stdlib::LibrarySource& source : stdlib::library_sources()) {
+    if (!stdlib::is_of_dialect(source, iec_)) continue;
     sources.add(std::string(source.name), std::string(source.text));
     frontend::parse(sources, file++, tree, diagnostics);
   }

@@ -20,6 +20,7 @@ struct Library {
 
   Library() {
     for (const LibrarySource& source : library_sources()) {
+      if (!is_of_dialect(source, true)) continue;
       sources.add(std::string(source.name), std::string(source.text));
     }
     for (uint32_t file = 0; file < sources.file_count(); ++file) {
