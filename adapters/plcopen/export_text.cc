@@ -3,7 +3,6 @@
 
 #include "adapters/plcopen/writer.h"
 #include "frontend/lex/lexer.h"
-#include "frontend/parse/token_sets.h"
 
 namespace plcopen {
 

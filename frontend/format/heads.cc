@@ -1,7 +1,6 @@
 #include "frontend/format/diagrams.h"
 #include "frontend/format/outliner.h"
 #include "frontend/format/spacing.h"
-#include "frontend/parse/token_sets.h"
 
 namespace frontend::formatting {
 

@@ -27,6 +27,17 @@ constexpr bool is_keyword(TokenKind kind) { return kind >= kFirstKeyword && kind
 // A name, or a soft keyword, which is a name wherever the grammar does not ask for it.
 constexpr bool is_name(TokenKind kind) { return kind == TokenKind::kName || kind >= kFirstSoft; }
 
+constexpr bool is_access(TokenKind kind) {
+  return kind == TokenKind::kPublic || kind == TokenKind::kPrivate ||
+         kind == TokenKind::kProtected || kind == TokenKind::kInternal;
+}
+
+// GET, PRIVATE and the like are names in a statement where this comes after them.
+constexpr bool follows_a_name(TokenKind next) {
+  return next == TokenKind::kAssign || next == TokenKind::kDot || next == TokenKind::kLeftParen ||
+         next == TokenKind::kLeftBracket || next == TokenKind::kCaret || next == TokenKind::kEqual;
+}
+
 struct Token {
   uint32_t begin = 0;  // SourcePos offset
   uint32_t length = 0;

@@ -38,12 +38,7 @@ void StartCode::construct(const ir::Place& at, ir::TypeId type, Range32 args,
 }
 
 void StartCode::exit(const ir::Place& at, const PouInfo& block) {
-  Expr written;
-  written.span = span_;
-  for (const PouInfo* method : codes_of(block, kFbExit)) {
-    std::vector<Binding> none;
-    if (check_all_given(*method, none)) call(at, *method, written, none);
-  }
+  for (const PouInfo* method : codes_of(block, kFbExit)) call(at, *method);
 }
 
 // What leaves, leaves from the outside in; the other way round, what is inside is ready first.
@@ -90,10 +85,7 @@ void StartCode::instance(const ir::Place& at, ir::TypeId type, Range32 args, ir:
   const ir::ValueId now = build_.load(stamp, kU32);
   when(build_.compare(ir::Op::kLe, kU32, number(ir::kFirstShapeStamp), now), [&] {
     when(build_.compare(ir::Op::kNe, kU32, now, number(made)), [&] {
-      Expr written;
-      written.span = span_;
-      std::vector<Binding> none;
-      if (check_all_given(*reinit[0], none)) call(at, *reinit[0], written, none);
+      call(at, *reinit[0]);
       set(made);
     });
   });
@@ -142,13 +134,17 @@ void StartCode::initialize(const ir::Place& at, const PouInfo& block, Range32 ar
 
 // Methods with 'call_after_init' of the block and its bases, once for each name.
 void StartCode::call_after(const ir::Place& at, const PouInfo& block) {
+  for (uint32_t method : ask<Objects>().called_after_init(block)) {
+    call(at, sema_.declared.pous[method]);
+  }
+}
+
+// Nobody gives it arguments.
+void StartCode::call(const ir::Place& at, const PouInfo& method) {
   Expr written;
   written.span = span_;
-  for (uint32_t method : ask<Objects>().called_after_init(block)) {
-    std::vector<Binding> none;
-    const PouInfo& code = sema_.declared.pous[method];
-    if (check_all_given(code, none)) call(at, code, written, none);
-  }
+  std::vector<Binding> none;
+  if (check_all_given(method, none)) call(at, method, written, none);
 }
 
 void StartCode::call(const ir::Place& at, const PouInfo& method, const Expr& written,

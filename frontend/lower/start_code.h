@@ -60,6 +60,7 @@ class StartCode : public BodyPhase {
   std::vector<const PouInfo*> codes_of(const PouInfo& block, std::string_view name) const;
   void initialize(const ir::Place& at, const PouInfo& block, Range32 args);
   void call_after(const ir::Place& at, const PouInfo& block);
+  void call(const ir::Place& at, const PouInfo& method);
   void call(const ir::Place& at, const PouInfo& method, const Expr& written,
             std::vector<Binding>& bindings);
   bool bind(const Expr& call, const PouInfo& method, std::vector<Binding>& bindings);

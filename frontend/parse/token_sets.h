@@ -32,17 +32,6 @@ constexpr bool is_member_end(TokenKind kind) {
          kind == TokenKind::kEndMockFunction;
 }
 
-constexpr bool is_access(TokenKind kind) {
-  return kind == TokenKind::kPublic || kind == TokenKind::kPrivate ||
-         kind == TokenKind::kProtected || kind == TokenKind::kInternal;
-}
-
-// GET, PRIVATE and the like are names in a statement where this comes after them.
-constexpr bool follows_a_name(TokenKind next) {
-  return next == TokenKind::kAssign || next == TokenKind::kDot || next == TokenKind::kLeftParen ||
-         next == TokenKind::kLeftBracket || next == TokenKind::kCaret || next == TokenKind::kEqual;
-}
-
 constexpr bool is_specifier(TokenKind kind) {
   return is_access(kind) || kind == TokenKind::kAbstract || kind == TokenKind::kFinal ||
          kind == TokenKind::kOverride;

@@ -38,7 +38,9 @@ until_said() {
 times_said() { cat watch.log watch.out | grep -cE -- "$1" || true; }
 running() { stvm image --dir plc -o "$1" 2>/dev/null || fail "no image"; }
 follow() {
-  "$bin/stvm" change --watch "$@" plant --dir plc >watch.out 2>watch.log </dev/null &
+  : >watch.out  # not by the new process, which may come to it late
+  : >watch.log
+  "$bin/stvm" change --watch "$@" plant --dir plc >>watch.out 2>>watch.log </dev/null &
   echo $! >watch.pid
 }
 end_follow() {
@@ -151,7 +153,9 @@ end_follow
 
 # An end of input answers one question, not those behind it.
 mkfifo keys
-script -qec "$bin/stvm change --watch plant --dir plc" /dev/null <keys >watch.out 2>watch.log &
+: >watch.out
+: >watch.log
+script -qec "$bin/stvm change --watch plant --dir plc" /dev/null <keys >>watch.out 2>>watch.log &
 echo $! >watch.pid
 exec 3>keys
 until_said 1 'what was saved is running already'

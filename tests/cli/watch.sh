@@ -43,7 +43,8 @@ save() { cat >"$1.new" && mv "$1.new" "$1"; }
 # watch: begins to build at each save.
 watch() {
   rm -f watched.img
-  "$bin/stc" build plant --watch -o watched.img 2>watch.log >watch.out </dev/null &
+  : >watch.log  # not by the new process, which may come to it late
+  "$bin/stc" build plant --watch -o watched.img 2>>watch.log >watch.out </dev/null &
   echo $! >watch.pid
   built 1
 }

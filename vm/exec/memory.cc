@@ -2,39 +2,79 @@
 
 #include <sys/mman.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
+#include "base/limits.h"
+
 namespace vm {
 namespace {
 
-#ifdef STC_EMULATED
-// qemu has a row for each page that is reserved, and writes all of them each time. Enough for all
-// that tests have; whoever needs more ends by a signal.
-constexpr size_t kBytes = size_t{1} << 28;
-constexpr size_t kGuard = size_t{1} << 26;
-#else
 constexpr size_t kBytes = size_t{1} << 32;
+
+#ifdef STC_EMULATED
+
+// qemu writes a row for each page that is mapped or unmapped, some 100 ns each. So only what tests
+// have something in is mapped: the bottom, and what lies from kMaxDataBytes on. Whoever needs more
+// ends by a signal. Ranges lie low in the space of `qemu -R`.
+constexpr size_t kBottom = size_t{1} << 28;
+constexpr size_t kTop = kBytes - base::kMaxDataBytes;
+
+constexpr uint32_t kRanges = 13;
+std::atomic<uint32_t> used_ranges{0};  // a bit for each
+
+bool map_at(uint8_t* at, size_t bytes) {
+  return mmap(at, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == at;
+}
+
+uint8_t* map_range() {
+  for (uint32_t i = 0; i < kRanges; ++i) {
+    const uint32_t bit = 1u << i;
+    if ((used_ranges.fetch_or(bit) & bit) != 0) continue;
+    auto* base = reinterpret_cast<uint8_t*>((i + 1) * kBytes);
+    if (map_at(base, kBottom) && map_at(base + base::kMaxDataBytes, kTop)) return base;
+  }
+  errno = ENOMEM;
+  return nullptr;
+}
+
+void unmap_range(uint8_t* base) {
+  munmap(base, kBottom);
+  munmap(base + base::kMaxDataBytes, kTop);
+  used_ranges.fetch_and(~(1u << (reinterpret_cast<uintptr_t>(base) / kBytes - 1)));
+}
+
+#else
+
 // After the last offset: the longest value (kMaxTypeBytes) and any displacement.
 constexpr size_t kGuard = size_t{3} << 30;
+
+uint8_t* map_range() {
+  void* range =
+      mmap(nullptr, kBytes + kGuard, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (range == MAP_FAILED) return nullptr;
+  if (mprotect(range, kBytes, PROT_READ | PROT_WRITE) == 0) return static_cast<uint8_t*>(range);
+  const int reason = errno;
+  munmap(range, kBytes + kGuard);
+  errno = reason;
+  return nullptr;
+}
+
+void unmap_range(uint8_t* base) { munmap(base, kBytes + kGuard); }
+
 #endif
 
 }  // namespace
 
 base::Result<Memory> Memory::reserve() {
-  void* range =
-      mmap(nullptr, kBytes + kGuard, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (range == MAP_FAILED || mprotect(range, kBytes, PROT_READ | PROT_WRITE) != 0) {
-    const int reason = errno;
-    if (range != MAP_FAILED) munmap(range, kBytes + kGuard);
-    return base::Error{base::Refusal::kTooLarge,
-                       std::string("cannot reserve 7 GiB of address space for data memory: ") +
-                           std::strerror(reason) +
-                           "; raise `ulimit -v` and `ulimit -d`, and leave vm.overcommit_memory "
-                           "at 0 or 1: memory is used only where the program has data"};
-  }
-  return Memory(static_cast<uint8_t*>(range));
+  if (uint8_t* range = map_range()) return Memory(range);
+  return base::Error{base::Refusal::kTooLarge,
+                     std::string("cannot reserve 7 GiB of address space for data memory: ") +
+                         std::strerror(errno) +
+                         "; raise `ulimit -v` and `ulimit -d`, and leave vm.overcommit_memory "
+                         "at 0 or 1: memory is used only where the program has data"};
 }
 
 Memory::Memory(Memory&& other) noexcept : base_(std::exchange(other.base_, nullptr)) {}
@@ -45,7 +85,7 @@ Memory& Memory::operator=(Memory&& other) noexcept {
 }
 
 Memory::~Memory() {
-  if (base_ != nullptr) munmap(base_, kBytes + kGuard);
+  if (base_ != nullptr) unmap_range(base_);
 }
 
 std::span<const uint8_t> Memory::view() const { return {base_, kBytes}; }

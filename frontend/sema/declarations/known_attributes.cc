@@ -30,10 +30,10 @@ void report_lone_call_after_init(const Phase& phase, const PouInfo& method) {
   const PouDecl& block = *phase.sema().declared.pous[method.owner].decl;
   const Attribute* own = tree.find_attribute(method.decl->attributes, kCallAfterInit);
   if (own == nullptr || tree.find_attribute(block.attributes, kCallAfterInit) != nullptr) return;
-  phase.warning(DiagnosticCode::kOtherAttribute, own->name.span,
-                "`call_after_init` has no effect: `" + std::string(block.name.text) +
-                    "` does not have it",
-                "write it in front of the FUNCTION_BLOCK too");
+  phase.warning(
+      DiagnosticCode::kOtherAttribute, own->name.span,
+      "`call_after_init` has no effect: `" + std::string(block.name.text) + "` does not have it",
+      "write it in front of the FUNCTION_BLOCK too");
 }
 
 // Where the attributes of packed structures stand, in order.
