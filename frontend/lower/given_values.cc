@@ -74,6 +74,8 @@ void GivenValues::find_inner(const ir::Place& at, ir::TypeId id, ir::ConstId giv
   if (!given.valid() || !ask<Objects>().constructs(id)) return;
   const ir::Type type = types()[id];
   if (type.kind == ir::Kind::kArray) {
+    const PouInfo* element = sema_.declared.pou_of(type.base);
+    if (element != nullptr && element->stamp.valid()) return remember_each(at, *element, id, given);
     uint64_t total = 1;
     for (const ir::Dimension& dim : type.dims) total *= dim.count();
     for (uint64_t i = 0; i < total; ++i) {
@@ -99,8 +101,43 @@ void GivenValues::remember(const ir::Place& at, const PouInfo& block, ir::TypeId
   start.when(fresh, [&] { take_back(at, type, given); });
 }
 
+// An array of them has an array of BOOL, so that a loop does for elements that are alike.
+void GivenValues::remember_each(const ir::Place& at, const PouInfo& element, ir::TypeId id,
+                                ir::ConstId given) {
+  const ir::Type type = types()[id];
+  const ir::TypeId flags =
+      sema_.program.types.array(elementary(ir::Kind::kBool), std::vector(type.dims));
+  inner_.push_back({at, id, given, temporary_place(flags)});
+  StartCode start = ask<StartCode>();
+  start.each_element(at, id, given, [&](const ir::Place& one, ir::ConstId value) {
+    const ir::ValueId fresh = start.is_new(one, element);
+    build_.store(flag_of(inner_.back(), one), ir::Scalar::kBool, fresh);
+    start.when(fresh, [&] { take_back(one, type.base, value); });
+  });
+}
+
+// The flag of an element has the same indices.
+ir::Place GivenValues::flag_of(const Inner& array, const ir::Place& element) const {
+  ir::Place flag = array.fresh;
+  for (size_t i = array.at.steps.size(); i < element.steps.size(); ++i) {
+    flag.steps.push_back(element.steps[i]);
+  }
+  flag.type = elementary(ir::Kind::kBool);
+  return flag;
+}
+
 void GivenValues::write_inner() {
   for (const Inner& one : inner_) {
+    if (types()[one.type].kind == ir::Kind::kArray) {
+      StartCode start = ask<StartCode>();
+      const ir::TypeId base = types()[one.type].base;
+      start.each_element(one.at, one.type, one.given,
+                         [&](const ir::Place& element, ir::ConstId value) {
+                           start.when(build_.load(flag_of(one, element), ir::Scalar::kBool),
+                                      [&] { write(element, base, value); });
+                         });
+      continue;
+    }
     ask<StartCode>().when(build_.load(one.fresh, ir::Scalar::kBool),
                           [&] { write(one.at, one.type, one.given); });
   }

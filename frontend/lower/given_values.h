@@ -32,12 +32,15 @@ class GivenValues : public BodyPhase {
     ir::Place at;
     ir::TypeId type;
     ir::ConstId given;
-    ir::Place fresh;  // BOOL: it was new before its FB_Init ran
+    ir::Place fresh;  // BOOL, or an array of it: it was new before its FB_Init ran
   };
   void set(const ir::Place& at, ir::TypeId type, ir::ConstId listed, ir::ConstId values);
   void set_member(const ir::Place& at, const ir::Member& member, ir::ConstId listed,
                   ir::ConstId values);
   void remember(const ir::Place& at, const PouInfo& block, ir::TypeId type, ir::ConstId given);
+  void remember_each(const ir::Place& at, const PouInfo& element, ir::TypeId array,
+                     ir::ConstId given);
+  ir::Place flag_of(const Inner& array, const ir::Place& element) const;
 
   std::vector<Inner> inner_;
 };

@@ -16,7 +16,7 @@ constexpr size_t kBytes = size_t{1} << 32;
 
 #ifdef STC_EMULATED
 
-// qemu writes a row for each page that is mapped or unmapped, some 100 ns each. So only what tests
+// qemu writes a row for each page that is mapped or unmapped. So only what tests
 // have something in is mapped: the bottom, and what lies from kMaxDataBytes on. Whoever needs more
 // ends by a signal. Ranges lie low in the space of `qemu -R`.
 constexpr size_t kBottom = size_t{1} << 28;
