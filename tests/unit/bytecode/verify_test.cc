@@ -34,6 +34,10 @@ TEST(Verify, V1_FormOfTables) {
   });
   expect_refused(Refusal::kBadFormat, "a structure that uses more than it has",
                  [](Image& i) { i.layouts.own().of[types_of(i).pair.index].used = 9; });
+  for (const uint32_t packing : {3u, 16u}) {
+    expect_refused(Refusal::kBadFormat, "a structure that is packed by no power of two up to 8",
+                   [&](Image& i) { i.types.own().edit(types_of(i).pair).capacity = packing; });
+  }
   // Process images go by the address, memory by the layout.
   expect_refused(Refusal::kBadFormat, "a member of a union with two places", [](Image& i) {
     i.types.own().edit(types_of(i).pair).kind = ir::Kind::kUnion;
