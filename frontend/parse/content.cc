@@ -19,35 +19,51 @@ bool is_word_char(char c) {
 }
 
 // What is collected of a POU: its pieces one after the other, and the names in them.
-struct Content {
-  std::string text;
-  std::vector<uint32_t> words;
+class Content {
+ public:
+  // `room`: bytes that the pieces will need, about.
+  explicit Content(size_t room) : text_(room, '\0') {}
 
   // A piece as it is.
-  void add(std::string_view piece) {
-    const size_t at = text.size();
-    text += piece;
-    add_words(std::string_view(text).substr(at));
-    text += kEnd;
-  }
+  void add(std::string_view piece) { add_words(copy(piece)); }
   void add_folded(std::string_view piece) { add_words(fold(piece)); }
   // A piece that is one name.
-  void add_word(std::string_view piece) { words.push_back(ir::word_hash(fold(piece))); }
+  void add_name(std::string_view piece) { words_.push_back(ir::word_hash(fold(piece))); }
+  // Pieces without a name in them.
+  void add_keyword(std::string_view piece) { fold(piece); }
+  void add_sign(std::string_view piece) { copy(piece); }
 
   ir::SourceContent finish() {
-    std::sort(words.begin(), words.end());
-    words.erase(std::unique(words.begin(), words.end()), words.end());
-    words.shrink_to_fit();
-    return {base::sha256(base::as_bytes(text)), std::move(words)};
+    std::sort(words_.begin(), words_.end());
+    words_.erase(std::unique(words_.begin(), words_.end()), words_.end());
+    words_.shrink_to_fit();
+    const std::string_view said = std::string_view(text_).substr(0, size_);
+    return {base::sha256(base::as_bytes(said)), std::move(words_)};
   }
 
  private:
+  std::string text_;  // the first size_ bytes
+  size_t size_ = 0;
+  std::vector<uint32_t> words_;
+
+  // Where a piece of that size goes.
+  char* room(size_t size) {
+    const size_t end = size_ + size + 1;
+    if (end > text_.size()) text_.resize(2 * end);
+    char* at = text_.data() + size_;
+    at[size] = kEnd;
+    size_ = end;
+    return at;
+  }
+  std::string_view copy(std::string_view piece) {
+    char* at = room(piece.size());
+    std::copy(piece.begin(), piece.end(), at);
+    return {at, piece.size()};
+  }
   std::string_view fold(std::string_view piece) {
-    const size_t at = text.size();
-    text.resize(at + piece.size() + 1);
-    base::fold_name(piece, text.data() + at);
-    text.back() = kEnd;
-    return std::string_view(text).substr(at, piece.size());
+    char* at = room(piece.size());
+    base::fold_name(piece, at);
+    return {at, piece.size()};
   }
   // Those in a piece: whatever begins with a digit is a number.
   void add_words(std::string_view piece) {
@@ -55,11 +71,27 @@ struct Content {
       size_t end = at;
       while (end < piece.size() && is_word_char(piece[end])) ++end;
       const bool digit = piece[at] >= '0' && piece[at] <= '9';
-      if (end > at && !digit) words.push_back(ir::word_hash(piece.substr(at, end - at)));
+      if (end > at && !digit) words_.push_back(ir::word_hash(piece.substr(at, end - at)));
       at = std::max(end, at + 1);
     }
   }
 };
+
+bool is_sign(TokenKind kind) { return kind >= TokenKind::kLeftParen && kind < kFirstKeyword; }
+
+void add_token(Content& out, TokenKind kind, std::string_view text) {
+  if (is_sign(kind)) {
+    out.add_sign(text);
+  } else if (is_keyword(kind)) {
+    out.add_keyword(text);
+  } else if (is_name(kind)) {
+    out.add_name(text);
+  } else if (kind == TokenKind::kString) {
+    out.add(text);
+  } else {
+    out.add_folded(text);
+  }
+}
 
 void add_number(Content& out, uint64_t number) { out.add(std::to_string(number)); }
 
@@ -137,8 +169,8 @@ void add_pragma(Content& out, std::string_view text) {
 }  // namespace
 
 ir::SourceContent Parser::content_of(const Token* first, const PouDecl& pou) const {
-  Content out;
-  out.text.reserve(current_->begin - first->begin);
+  const auto tokens = static_cast<size_t>(current_ - first);
+  Content out(current_->begin - first->begin + tokens);
   for (uint32_t i = 0; i < pou.attributes.count; ++i) {
     const Attribute& attribute = tree_.attributes[pou.attributes.first + i];
     attribute_text(out, attribute.name.text, attribute.value);
@@ -160,13 +192,8 @@ ir::SourceContent Parser::content_of(const Token* first, const PouDecl& pou) con
       add_pragma(out, text_.substr(pragma->begin.offset - base_,
                                    pragma->end.offset - pragma->begin.offset));
     }
-    const std::string_view piece = text(*token);
     const TokenKind kind = token->kind;
-    if (is_keyword(kind) || is_name(kind)) {
-      out.add_word(piece);
-    } else {
-      kind == TokenKind::kString ? out.add(piece) : out.add_folded(piece);
-    }
+    add_token(out, kind, text(*token));
     const bool drawing = kind == TokenKind::kLadder || kind == TokenKind::kFbd;
     if (drawing && pou.diagram != kNoDiagram) add_diagram(out, tree_.diagrams[pou.diagram]);
     ++token;
