@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "frontend/sema/phase.h"
+#include "frontend/sema/types/conversion.h"
+
 namespace frontend {
 
 namespace {

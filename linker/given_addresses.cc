@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/limits.h"
 #include "ir/types/location.h"
 #include "ir/types/natural_layout.h"
 #include "linker/data.h"

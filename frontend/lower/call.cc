@@ -5,6 +5,7 @@
 #include "frontend/lower/conversions.h"
 #include "frontend/lower/enable.h"
 #include "frontend/lower/method_code.h"
+#include "frontend/lower/places.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/standard_code.h"
 #include "frontend/lower/test_code.h"

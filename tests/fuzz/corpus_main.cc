@@ -129,13 +129,14 @@ std::string mutated(const std::vector<std::string>& corpus, Random& random) {
 }
 
 const std::string* running = nullptr;
+std::string failing;  // file for the input that ended the process; others may run beside it
 
 // The input that ended the process goes where it can be looked at.
 void keep_input(int signal) {
-  if (std::FILE* file = std::fopen("failing_input", "wb")) {
+  if (std::FILE* file = std::fopen(failing.c_str(), "wb")) {
     std::fwrite(running->data(), 1, running->size(), file);
     std::fclose(file);
-    std::fputs("the input is in failing_input\n", stderr);
+    std::fprintf(stderr, "the input is in %s\n", failing.c_str());
   }
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -160,9 +161,12 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: no files\n", argv[1]);
     return 2;
   }
+  const std::string name = std::filesystem::path(argv[0]).filename();
+  failing = name + ".failing_input";
   for (int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGALRM}) std::signal(signal, keep_input);
   for (const std::string& text : corpus) run(text);
   for (size_t i = 0; i < count; ++i) run(mutated(corpus, random));
-  std::printf("%zu corpus files, %zu mutations, no failure\n", corpus.size(), count);
+  std::printf("%s: %zu corpus files, %zu mutations, no failure\n", name.c_str(), corpus.size(),
+              count);
   return 0;
 }
