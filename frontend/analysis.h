@@ -18,9 +18,12 @@ struct Parsed {
   uint32_t library_file = 0;
   Tree tree;
 };
+// Of the standard library: all, where names of it may be asked for later, or what the sources need
+// (lex/library_index.h). Programs and messages are the same.
+enum class LibraryExtent : uint8_t { kWhole, kNeeded };
 // Null, with a message, when there is nothing to be found in it.
 std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const CompileOptions& options,
-                                      base::Diagnostics& diagnostics);
+                                      LibraryExtent extent, base::Diagnostics& diagnostics);
 
 // Everything in front of the bodies. The program has all types, interfaces and heads of POUs.
 void declare_all(Sema& sema);

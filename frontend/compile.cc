@@ -11,6 +11,7 @@
 #include "frontend/coverage.h"
 #include "frontend/finished_bodies.h"
 #include "frontend/lex/declaration_index.h"
+#include "frontend/lex/library_index.h"
 #include "frontend/lower/body.h"
 #include "frontend/parse/address_map.h"
 #include "frontend/parse/parse.h"
@@ -69,10 +70,10 @@ bool fits(const base::SourceMap& sources, uint64_t most, base::Diagnostics& diag
 }
 
 // The library's files come after the project's, so positions stay what they were.
-base::SourceMap with_library(const base::SourceMap& sources, Dialect dialect) {
+base::SourceMap with_library(const base::SourceMap& sources, const std::vector<uint32_t>& files) {
   base::SourceMap all = sources;
-  for (const stdlib::LibrarySource& library : stdlib::library_sources()) {
-    if (!stdlib::is_of_dialect(library, dialect == Dialect::kIec)) continue;
+  for (const uint32_t file : files) {
+    const stdlib::LibrarySource& library = stdlib::library_sources()[file];
     all.add(std::string(library.name), std::string(library.text));
   }
   return all;
@@ -81,10 +82,12 @@ base::SourceMap with_library(const base::SourceMap& sources, Dialect dialect) {
 }  // namespace
 
 std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const CompileOptions& options,
-                                      base::Diagnostics& diagnostics) {
+                                      LibraryExtent extent, base::Diagnostics& diagnostics) {
   if (!fits(sources, options.max_source_bytes, diagnostics)) return nullptr;
   auto parsed = std::make_unique<Parsed>();
-  parsed->sources = with_library(sources, options.dialect);
+  const LibraryIndex& library = LibraryIndex::of(options.dialect == Dialect::kIec);
+  parsed->sources = with_library(
+      sources, extent == LibraryExtent::kWhole ? library.all() : library.needed(sources));
   parsed->library_file = sources.file_count();
   parse_all(parsed->sources, options, parsed->tree, diagnostics);
   if (has_open_comment(diagnostics)) return nullptr;
@@ -157,7 +160,8 @@ std::optional<Analysed> analyse(Purpose purpose, Parsed& parsed, bool once,
 std::optional<TestProgram> compile_as(Purpose purpose, const base::SourceMap& sources,
                                       const CompileOptions& options,
                                       base::Diagnostics& diagnostics) {
-  const std::unique_ptr<Parsed> parsed = parse_project(sources, options, diagnostics);
+  const std::unique_ptr<Parsed> parsed =
+      parse_project(sources, options, LibraryExtent::kNeeded, diagnostics);
   if (parsed == nullptr) return std::nullopt;
   const bool once = purpose == Purpose::kRun;
   std::optional<Analysed> analysed = analyse(purpose, *parsed, once, options, diagnostics);
@@ -182,7 +186,8 @@ std::optional<ir::Program> compile(const base::SourceMap& sources, const Compile
 std::optional<Resources> compile_resources(const base::SourceMap& sources,
                                            const CompileOptions& options,
                                            base::Diagnostics& diagnostics) {
-  const std::unique_ptr<Parsed> parsed = parse_project(sources, options, diagnostics);
+  const std::unique_ptr<Parsed> parsed =
+      parse_project(sources, options, LibraryExtent::kNeeded, diagnostics);
   if (parsed == nullptr) return std::nullopt;
   CompileOptions of_one = options;
   const auto named = [&](const std::string& name) {

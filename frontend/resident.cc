@@ -60,7 +60,7 @@ ir::Program* Resident::compile(const base::SourceMap& sources, const CompileOpti
   sema_.reset();
   options_ = options;
   diagnostics_ = base::Diagnostics();
-  parsed_ = parse_project(sources, options_, diagnostics_);
+  parsed_ = parse_project(sources, options_, LibraryExtent::kWhole, diagnostics_);
   if (parsed_ != nullptr) {
     const auto& configs = parsed_->tree.configs;
     const bool several = configs.size() == 1 && configs[0].resources.size() > 1;

@@ -4,9 +4,27 @@
 # `old` replaced by `new` and the suffix after the name of every POU: one source for all types.
 # A suffix `L-` stands in front of the name: LTON. With `vendors` in place of the suffix, names stay, and what is written stands for the plain file in
 # the dialects of vendors.
+# A file that begins with `(* DIALECT Iec *)` or `(* DIALECT Vendors *)` is of the library there only.
 function(embed name text dialects)
+  declared_names("${text}")
   file(APPEND ${OUT}.tmp
-       "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\", LibraryDialects::k${dialects}},\n")
+       "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\", LibraryDialects::k${dialects},\n \"${pous}\", \"${others}\"},\n")
+endfunction()
+
+# Sets `pous` and `others` to what the text declares, separated by blanks: after FUNCTION and FUNCTION_BLOCK; and
+# between TYPE and END_TYPE what is no comment, no member of a structure and, by its colon, no type.
+function(declared_names text)
+  string(REGEX REPLACE "\\(\\*([^*]|\\*[^)])*\\*\\)|//[^\n]*" " " text "${text}")
+  string(REGEX MATCHALL "FUNCTION(_BLOCK)? [A-Za-z0-9_]+" heads "${text}")
+  string(REGEX REPLACE "FUNCTION(_BLOCK)? |;" " " heads "${heads}")
+  set(others "")
+  string(REGEX REPLACE "STRUCT([^S]|S[^T]|ST[^R]|STR[^U])*END_STRUCT" " " text "${text}")
+  string(REGEX MATCHALL "TYPE[ \n]([^E]|E[^N]|EN[^D]|END[^_]|END_[^T])*END_TYPE" parts "${text}")
+  string(REGEX REPLACE "END_TYPE|TYPE[ \n]|: *[A-Za-z0-9_]+" " " parts "${parts}")
+  string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]*" parts "${parts}")
+  string(REPLACE ";" " " parts "${parts}")
+  set(pous "${heads}" PARENT_SCOPE)
+  set(others "${parts}" PARENT_SCOPE)
 endfunction()
 
 # Text goes through as one quoted string: it is full of semicolons, which separate CMake's lists.
@@ -41,7 +59,10 @@ foreach(source ${SOURCES})
   file(READ ${source} text)
   string(REGEX MATCHALL "\\(\\* VARIANT [^*]*\\*\\)" variants "${text}")
   string(REGEX REPLACE "\\(\\* VARIANT [^*]*\\*\\)\n" "" text "${text}")
-  if(variants MATCHES "VARIANT vendors ")
+  string(REGEX MATCH "^\\(\\* DIALECT ([A-Za-z]+) \\*\\)" only "${text}")
+  if(only)
+    embed("${name}" "${text}" ${CMAKE_MATCH_1})
+  elseif(variants MATCHES "VARIANT vendors ")
     embed("${name}" "${text}" Iec)
   else()
     embed("${name}" "${text}" All)

@@ -43,14 +43,6 @@ std::string_view other_name(std::string_view function, std::string_view name) {
   return {};
 }
 
-std::span<const std::string_view> library_names() {
-#define LIBRARY(name, interface, meaning) name,
-  static constexpr std::string_view kNames[] = {
-#include "stdlib/registry.def"
-  };
-  return kNames;
-}
-
 bool is_vendor_library(std::string_view name) {
 #define VENDOR(name, meaning) name,
   static constexpr std::string_view kNames[] = {
@@ -65,7 +57,9 @@ std::span<const PageRow> page_rows() {
 #define FUNCTION(id, name, rule, fewest, most, parameters, signature, meaning) \
   PageRow{name, signature, meaning},
 #define CONVERSION(form, signature, meaning) PageRow{form, signature, meaning},
-#define LIBRARY(name, interface, meaning) PageRow{name, interface, meaning},
+#define LIBRARY(name, interface, meaning) LIBRARY_OF(kAll, name, interface, meaning)
+#define LIBRARY_OF(dialects, name, interface, meaning) \
+  PageRow{name, interface, meaning, true, LibraryDialects::dialects},
 #define VENDOR(name, meaning) PageRow{name, "all of it", meaning},
   static constexpr PageRow kRows[] = {
 #include "stdlib/registry.def"

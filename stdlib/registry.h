@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "stdlib/sources.h"
+
 namespace stdlib {
 
 enum class FunctionId : uint8_t {
@@ -85,9 +87,9 @@ struct PageRow {
   std::string_view name;
   std::string_view interface;
   std::string_view meaning;
+  bool in_st = false;  // written in ST: stdlib/st
+  LibraryDialects dialects = LibraryDialects::kAll;
 };
 std::span<const PageRow> page_rows();
-// What is written in ST, without variants.
-std::span<const std::string_view> library_names();
 
 }  // namespace stdlib

@@ -14,12 +14,20 @@ struct LibrarySource {
   std::string_view name;  // "<stdlib>/timers.st"
   std::string_view text;
   LibraryDialects dialects;
+  // Names that it declares, separated by blanks: functions and function blocks; types and
+  // enumerators.
+  std::string_view pous;
+  std::string_view types;
 };
 std::span<const LibrarySource> library_sources();
 
-// Does the source belong to the library of the standard's own dialect, or else of the others?
+// Are those the standard's own dialect, or else the others, among others?
+constexpr bool are_of_dialect(LibraryDialects dialects, bool iec) {
+  return dialects != (iec ? LibraryDialects::kVendors : LibraryDialects::kIec);
+}
+// Does the source belong to the library there?
 constexpr bool is_of_dialect(const LibrarySource& source, bool iec) {
-  return source.dialects != (iec ? LibraryDialects::kVendors : LibraryDialects::kIec);
+  return are_of_dialect(source.dialects, iec);
 }
 
 }  // namespace stdlib

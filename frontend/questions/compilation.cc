@@ -5,7 +5,8 @@
 namespace frontend::questions {
 
 Compilation::Compilation(const base::SourceMap& sources, const CompileOptions& options)
-    : options_(options), parsed_(parse_project(sources, options_, diagnostics_)) {
+    : options_(options),
+      parsed_(parse_project(sources, options_, LibraryExtent::kWhole, diagnostics_)) {
   if (parsed_ == nullptr) return;
   sema_ = std::make_unique<Sema>(parsed_->sources, parsed_->tree, parsed_->library_file, options_,
                                  options_.tests ? Purpose::kTest : Purpose::kRun, diagnostics_);

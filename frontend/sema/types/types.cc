@@ -2,6 +2,7 @@
 // for their content; structures and enumerations are types of their own.
 #include "frontend/sema/types/types.h"
 #include "base/limits.h"
+#include "frontend/lex/library_index.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/declarations/collection.h"
 #include "frontend/sema/declarations/old_names.h"
@@ -123,7 +124,8 @@ TypeUse Types::resolve_named(const Spec& spec) {
   NearestName nearest(name);
   nearest.offer_all(sema_.declared.types);
   nearest.offer_all(sema_.declared.pou_names);
-  nearest.offer_all(sema_.library.pous);
+  const bool iec = sema_.options.dialect == Dialect::kIec;
+  for (const std::string_view block : LibraryIndex::of(iec).pous()) nearest.offer(block);
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     nearest.offer(ir::elementary_name(static_cast<ir::Kind>(i)));
   }

@@ -39,7 +39,8 @@ Chunks lower(const std::string& text) {
   sources.add("blocks.st", text);
   base::Diagnostics diagnostics;
   const frontend::CompileOptions options;
-  auto parsed = frontend::parse_project(sources, options, diagnostics);
+  auto parsed = frontend::parse_project(sources, options, frontend::LibraryExtent::kNeeded,
+                                        diagnostics);
   frontend::Sema sema(parsed->sources, parsed->tree, parsed->library_file, options,
                       frontend::Purpose::kRun, diagnostics);
   frontend::declare_all(sema);
