@@ -89,8 +89,10 @@ void Parser::parse_file_pou(PouKind pou_kind, Range32 attributes) {
 void Parser::parse_outside_member(Range32 attributes) {
   bool owned = owner_ != kNoOwner && takes_members(tree_.pous[owner_].kind);
   if (owned) {
-    parse_member(tree_.pous[owner_], attributes);
-    return take_actions(tree_.pous[owner_]);
+    PouDecl& owner = tree_.pous[owner_];
+    parse_member(owner, attributes);
+    owner.exprs.count = tree_.exprs.of_bodies() - owner.exprs.first;
+    return take_actions(owner);
   }
   note_only(
       Code::kMisplacedMember, current_->span(),
