@@ -8,23 +8,22 @@
 function(embed name text dialects)
   declared_names("${text}")
   file(APPEND ${OUT}.tmp
-       "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\", LibraryDialects::k${dialects},\n \"${pous}\", \"${others}\"},\n")
+       "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\", LibraryDialects::k${dialects},\n \"${pous}\", \"${types}\"},\n")
 endfunction()
 
-# Sets `pous` and `others` to what the text declares, separated by blanks: after FUNCTION and FUNCTION_BLOCK; and
+# Sets `pous` and `types` to what the text declares, separated by blanks: after FUNCTION and FUNCTION_BLOCK; and
 # between TYPE and END_TYPE what is no comment, no member of a structure and, by its colon, no type.
 function(declared_names text)
   string(REGEX REPLACE "\\(\\*([^*]|\\*[^)])*\\*\\)|//[^\n]*" " " text "${text}")
   string(REGEX MATCHALL "FUNCTION(_BLOCK)? [A-Za-z0-9_]+" heads "${text}")
   string(REGEX REPLACE "FUNCTION(_BLOCK)? |;" " " heads "${heads}")
-  set(others "")
   string(REGEX REPLACE "STRUCT([^S]|S[^T]|ST[^R]|STR[^U])*END_STRUCT" " " text "${text}")
   string(REGEX MATCHALL "TYPE[ \n]([^E]|E[^N]|EN[^D]|END[^_]|END_[^T])*END_TYPE" parts "${text}")
   string(REGEX REPLACE "END_TYPE|TYPE[ \n]|: *[A-Za-z0-9_]+" " " parts "${parts}")
   string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]*" parts "${parts}")
   string(REPLACE ";" " " parts "${parts}")
   set(pous "${heads}" PARENT_SCOPE)
-  set(others "${parts}" PARENT_SCOPE)
+  set(types "${parts}" PARENT_SCOPE)
 endfunction()
 
 # Text goes through as one quoted string: it is full of semicolons, which separate CMake's lists.
