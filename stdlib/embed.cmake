@@ -11,8 +11,9 @@ function(embed name text dialects)
        "{\"<stdlib>/${name}.st\", R\"st~(${text})st~\", LibraryDialects::k${dialects},\n \"${pous}\", \"${types}\"},\n")
 endfunction()
 
-# Sets `pous` and `types` to what the text declares, separated by blanks: after FUNCTION and FUNCTION_BLOCK; and
-# between TYPE and END_TYPE what is no comment, no member of a structure and, by its colon, no type.
+# Sets `pous` and `types` to the names that the text declares, separated by blanks. `pous`: the
+# names after FUNCTION and FUNCTION_BLOCK. `types`: the words between TYPE and END_TYPE, without
+# comments, members of structures, and words after a colon.
 function(declared_names text)
   string(REGEX REPLACE "\\(\\*([^*]|\\*[^)])*\\*\\)|//[^\n]*" " " text "${text}")
   string(REGEX MATCHALL "FUNCTION(_BLOCK)? [A-Za-z0-9_]+" heads "${text}")

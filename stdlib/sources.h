@@ -21,11 +21,11 @@ struct LibrarySource {
 };
 std::span<const LibrarySource> library_sources();
 
-// Are those the standard's own dialect, or else the others, among others?
+// `iec`: does that include the standard's own dialect? Otherwise: those of CODESYS and TwinCAT?
 constexpr bool are_of_dialect(LibraryDialects dialects, bool iec) {
   return dialects != (iec ? LibraryDialects::kVendors : LibraryDialects::kIec);
 }
-// Does the source belong to the library there?
+// Does the source belong to the library of that dialect?
 constexpr bool is_of_dialect(const LibrarySource& source, bool iec) {
   return are_of_dialect(source.dialects, iec);
 }

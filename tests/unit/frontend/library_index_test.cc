@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
+#include "frontend/compile.h"
 #include "frontend/parse/parse.h"
 #include "stdlib/sources.h"
 
@@ -99,6 +100,17 @@ TEST(LibraryIndex, AFileBringsWhatItNeedsItself) {
           << library[file].name;
     }
   }
+}
+
+// Also a block of a file that the project does not need.
+TEST(LibraryIndex, AMisspeltBlockHasItsWayOut) {
+  base::SourceMap sources;
+  sources.add("a.st", "PROGRAM p VAR t : CTUDD; END_VAR END_PROGRAM");
+  EXPECT_EQ(LibraryIndex::of(false).needed(sources).size(), 2u);
+  base::Diagnostics diagnostics;
+  EXPECT_FALSE(frontend::compile(sources, {}, diagnostics).has_value());
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].fix, "did you mean `CTUD`?");
 }
 
 TEST(LibraryIndex, LargeSourcesGetAll) {
