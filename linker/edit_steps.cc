@@ -15,7 +15,7 @@ namespace {
 using ir::PartEdit;
 
 std::vector<PartEdit> edits_of(const EditImages& edit) {
-  const std::vector<ir::Part> original = ir::parts_of(edit.original);
+  const std::vector<ir::Part> original = ir::parts_of(edit.original, edit.edited.unit_members);
   return ir::part_edits(original, ir::parts_of(edit.edited), original);
 }
 
@@ -40,7 +40,7 @@ Steps all_steps(const EditImages& edit) {
   std::map<std::string, std::string> left;
   for (const PartEdit& part : edits_of(edit)) {
     if (ir::is_of_unit(part.kind)) {
-      left.emplace(ir::fold_name(part.name), part.name);
+      left.emplace(ir::fold_name(part.unit), part.unit);
     } else {
       steps.table = true;
     }

@@ -350,6 +350,7 @@ class Linker {
     if (base::Status sized = size_process_image(image_); !sized.ok()) return sized;
     if (base::Status placed = place_devices(image_, options_.devices); !placed.ok()) return placed;
     image_.safe = options_.safe;
+    image_.unit_members = options_.unit_members;
     image_.access = program_.access;
     image_.shared = program_.shared;
     image_.schedule = program_.schedule;

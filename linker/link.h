@@ -17,11 +17,12 @@ namespace linker {
 
 struct Options {
   Slack slack;
-  const ir::Image* base = nullptr;        // the running version, or null
-  bool move_all = false;                  // hard mode: give every instance a new area
-  std::vector<ir::Device> devices = {};   // of stc.toml, checked (ir/bytecode/devices.h)
-  std::vector<ir::SafeOutput> safe = {};  // Image::safe; the caller checks that they fit
-  uint32_t jobs = 1;                      // threads at most; the image is the same
+  const ir::Image* base = nullptr;                // the running version, or null
+  bool move_all = false;                          // hard mode: give every instance a new area
+  std::vector<ir::Device> devices = {};           // of stc.toml, checked (ir/bytecode/devices.h)
+  std::vector<ir::SafeOutput> safe = {};          // Image::safe; the caller checks that they fit
+  std::vector<ir::UnitMember> unit_members = {};  // Image::unit_members; names nobody has are kept
+  uint32_t jobs = 1;                              // threads at most; the image is the same
   // Tests ask for less, so that the limits can be reached.
   uint32_t max_instances = base::kMaxInstances;
   uint32_t max_code_units = base::kMaxCodeUnits;

@@ -121,6 +121,16 @@ base::Status check_fixed(const FixedPous& pous, const ir::Image& from, const ir:
                 "` would lie otherwise, or be of another size");
 }
 
+// Those of the edit, and what the target has besides.
+ir::UnitMembers units_of_both(const ir::UnitMembers& edited, const ir::UnitMembers& target) {
+  ir::UnitMembers units = edited;
+  for (const ir::UnitMember& row : target) {
+    if (ir::find_unit_member(edited, row.name) == nullptr) units.push_back(row);
+  }
+  ir::sort_by_name(units);
+  return units;
+}
+
 base::Result<ir::Image> link_merged(const MergeInput& input, const MergedPous& pous,
                                     const MergedRows& rows, const Slack& slack) {
   Options options;
@@ -128,6 +138,7 @@ base::Result<ir::Image> link_merged(const MergeInput& input, const MergedPous& p
   options.slack = slack;
   options.devices = rows.devices;
   options.safe = rows.safe;
+  options.unit_members = units_of_both(input.edited.unit_members, input.target.unit_members);
   base::Result<ir::Image> image = link(*rows.merged, pous.objects, options);
   if (!image.ok()) return image;
   const OtherTypes others(input.edited, *image);
@@ -144,8 +155,9 @@ base::Result<ir::Image> link_merged(const MergeInput& input, const MergedPous& p
 }  // namespace
 
 std::vector<PartEdit> merge_parts(const MergeInput& input) {
-  return ir::part_edits(ir::parts_of(input.original), ir::parts_of(input.edited),
-                        ir::parts_of(input.target));
+  const ir::UnitMembers& units = input.edited.unit_members;
+  return ir::part_edits(ir::parts_of(input.original, units), ir::parts_of(input.edited),
+                        ir::parts_of(input.target, units));
 }
 
 base::Result<ir::Image> merge(const MergeInput& input, const MergeOptions& options) {

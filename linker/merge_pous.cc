@@ -36,9 +36,9 @@ class PouMerger {
   PouMerger(const MergeInput& input, const PartChoice& choice, const Unlinked& edited,
             const Unlinked& target, MergedRows& rows)
       : input_(input), choice_(choice), edited_(edited), target_(target), rows_(rows) {
-    original_parts_ = ir::parts_of(input.original);
+    original_parts_ = ir::parts_of(input.original, units());
     edited_parts_ = ir::parts_of(input.edited);
-    target_parts_ = ir::parts_of(input.target);
+    target_parts_ = ir::parts_of(input.target, units());
   }
 
   base::Result<MergedPous> run() {
@@ -53,6 +53,8 @@ class PouMerger {
   }
 
  private:
+  const ir::UnitMembers& units() const { return input_.edited.unit_members; }
+
   static base::Digest unit_of(const std::vector<ir::Part>& parts, const std::string& name) {
     const ir::Part* const part = ir::find_part(parts, PartKind::kUnit, name);
     return part == nullptr ? base::Digest{} : part->identity;
@@ -89,9 +91,9 @@ class PouMerger {
   }
 
   std::string name_of_unit(const Versions& pou) const {
-    if (pou.target) return ir::unit_name(input_.target, *pou.target);
+    if (pou.target) return ir::unit_name(input_.target, *pou.target, units());
     if (pou.edited) return ir::unit_name(input_.edited, *pou.edited);
-    return ir::unit_name(input_.original, *pou.original);
+    return ir::unit_name(input_.original, *pou.original, units());
   }
 
   static base::Digest digest_of(const ir::Image& image, std::optional<uint32_t> pou) {
@@ -159,9 +161,11 @@ class PouMerger {
                          [](const ir::HeldPart& row, uint32_t number) { return row.pou < number; });
     for (auto row = first; row != image.held.end() && row->pou == pou; ++row) {
       const PartKind kind = kKinds[static_cast<size_t>(row->what.kind)];
-      if (!is_other(kind, row->what.name)) continue;
+      const std::string& name =
+          kind == PartKind::kUnit ? ir::unit_of(units(), row->what.name) : row->what.name;
+      if (!is_other(kind, name)) continue;
       refuse("the code of `" + image.pous[pou].name + "` was made with another " +
-             std::string(ir::part_kind_name(kind)) + " `" + row->what.name + "`");
+             std::string(ir::part_kind_name(kind)) + " `" + name + "`");
     }
   }
 

@@ -18,7 +18,8 @@ bool has_own_variables(Kind kind) {
 
 class Parts {
  public:
-  explicit Parts(const Image& image) : image_(image), types_(*image.types) {}
+  Parts(const Image& image, const UnitMembers& members)
+      : image_(image), members_(members), types_(*image.types) {}
 
   std::vector<Part> run() {
     units();
@@ -49,8 +50,9 @@ class Parts {
   }
 
  private:
-  void add(PartKind kind, const std::string& name, const base::ByteWriter& out) {
-    parts_.push_back({kind, name, base::sha256(out.bytes())});
+  void add(PartKind kind, const std::string& name, const base::ByteWriter& out,
+           const std::string& unit = {}) {
+    parts_.push_back({kind, name, base::sha256(out.bytes()), unit});
   }
 
   // What the sources say of each POU; of an image that does not know, what its code is.
@@ -58,7 +60,7 @@ class Parts {
     std::map<std::string, std::map<std::string, uint32_t>> units;
     std::map<std::string, std::string> names;
     for (uint32_t i = 0; i < image_.pous.size(); ++i) {
-      const std::string name = unit_name(image_, i);
+      const std::string name = unit_name(image_, i, members_);
       if (name.empty()) continue;
       names.emplace(fold_name(name), name);
       units[fold_name(name)].emplace(fold_name(image_.pous[i].name), i);
@@ -71,7 +73,7 @@ class Parts {
         out.raw(image_.contents.empty() ? image_.pous[number].identity
                                         : image_.contents[number].identity);
       }
-      add(PartKind::kUnit, names[key], out);
+      add(PartKind::kUnit, names[key], out, names[key]);
     }
   }
 
@@ -81,7 +83,11 @@ class Parts {
       if (type.name.empty() || type.kind == Kind::kGlobals) continue;
       base::ByteWriter out;
       write_type(out, TypeId(i));
-      add(has_own_variables(type.kind) ? PartKind::kBlock : PartKind::kType, type.name, out);
+      if (has_own_variables(type.kind)) {
+        add(PartKind::kBlock, type.name, out, unit_of(members_, type.name));
+      } else {
+        add(PartKind::kType, type.name, out);
+      }
     }
   }
 
@@ -186,6 +192,7 @@ class Parts {
   }
 
   const Image& image_;
+  const UnitMembers& members_;
   const TypeTable& types_;
   std::vector<Part> parts_;
 };
@@ -214,14 +221,39 @@ std::string safe_name(const SafeOutput& row) {
   return "%QX" + std::to_string(row.bit_offset / 8) + "." + std::to_string(row.bit_offset % 8);
 }
 
-std::string unit_name(const Image& image, uint32_t pou) {
+std::string unit_name(const Image& image, uint32_t pou, const UnitMembers& members) {
   const LinkedPou& row = image.pous[pou];
   const bool made = !image.contents.empty() && image.contents[pou] == PouContent{};
   if (row.name.empty() || made) return "";
-  return row.kind == PouKind::kMethod ? image.types->operator[](row.self).name : row.name;
+  if (row.kind != PouKind::kMethod) return unit_of(members, row.name);
+  const UnitMember* const section = find_unit_member(members, row.name);
+  return section != nullptr ? section->unit : unit_of(members, (*image.types)[row.self].name);
 }
 
-std::vector<Part> parts_of(const Image& image) { return Parts(image).run(); }
+const UnitMember* find_unit_member(const UnitMembers& members, const std::string& name) {
+  if (members.empty()) return nullptr;
+  const std::string folded = fold_name(name);
+  const auto found = std::lower_bound(members.begin(), members.end(), folded,
+                                      [](const UnitMember& row, const std::string& wanted) {
+                                        return fold_name(row.name) < wanted;
+                                      });
+  return found != members.end() && fold_name(found->name) == folded ? &*found : nullptr;
+}
+
+void sort_by_name(UnitMembers& members) {
+  std::sort(members.begin(), members.end(), [](const UnitMember& a, const UnitMember& b) {
+    return fold_name(a.name) < fold_name(b.name);
+  });
+}
+
+const std::string& unit_of(const UnitMembers& members, const std::string& name) {
+  const UnitMember* const row = find_unit_member(members, name);
+  return row == nullptr ? name : row->unit;
+}
+
+std::vector<Part> parts_of(const Image& image, const UnitMembers& members) {
+  return Parts(image, members).run();
+}
 
 const Part* find_part(const std::vector<Part>& parts, PartKind kind, std::string_view name) {
   const std::string key = fold_name(std::string(name));

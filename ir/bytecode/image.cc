@@ -43,31 +43,24 @@ bool has_other_types(const Image& image) {
                      [](const LinkedMigration& row) { return row.from_other; });
 }
 
-uint32_t version_of(const Image& image, bool has_sources) {
-  if (has_other_types(image)) {
-    return has_sources ? kImageVersionOfOtherTypesAndSources : kImageVersionOfOtherTypes;
-  }
-  if (has_task_exchange(image)) {
-    return has_sources ? kImageVersionOfTaskExchangeAndSources : kImageVersionOfTaskExchange;
-  }
-  if (!image.held.empty()) {
-    return has_sources ? kImageVersionOfHeldAndSources : kImageVersionOfHeld;
-  }
-  if (!image.contents.empty()) {
-    return has_sources ? kImageVersionOfContentsAndSources : kImageVersionOfContents;
-  }
-  if (has_sources) return kImageVersionOfSources;
+uint32_t version_without_sources(const Image& image) {
+  if (!image.unit_members.empty()) return kImageVersionOfUnits;
+  if (has_other_types(image)) return kImageVersionOfOtherTypes;
+  if (has_task_exchange(image)) return kImageVersionOfTaskExchange;
+  if (!image.held.empty()) return kImageVersionOfHeld;
+  if (!image.contents.empty()) return kImageVersionOfContents;
   if (!image.charts.empty()) return kImageVersionOfCharts;
   return image.schedule == Schedule::kSendFirst ? kFirstImageVersion : kImageVersionOfSchedules;
 }
 
+uint32_t version_of(const Image& image, bool has_sources) {
+  const uint32_t version = version_without_sources(image);
+  if (!has_sources) return version;
+  return version < kImageVersionOfSources ? kImageVersionOfSources : version + 1;
+}
+
 uint32_t sections_of(uint32_t version) {
-  const bool has_sources = version == kImageVersionOfSources ||
-                           version == kImageVersionOfContentsAndSources ||
-                           version == kImageVersionOfHeldAndSources ||
-                           version == kImageVersionOfTaskExchangeAndSources ||
-                           version == kImageVersionOfOtherTypesAndSources;
-  return has_sources ? kImageSectionCount + 1 : kImageSectionCount;
+  return version_has_sources(version) ? kImageSectionCount + 1 : kImageSectionCount;
 }
 
 // The version in a header that is there.

@@ -80,6 +80,14 @@ struct HeldPart {
   friend auto operator<=>(const HeldPart&, const HeldPart&) = default;
 };
 
+// A POU whose unit is neither its own nor that of its block (E-01): several that a project joins,
+// or a PROGRAM's action as a section by itself.
+struct UnitMember {
+  std::string name;  // of the POU, for all that is in it, or "PROGRAM.ACTION"
+  std::string unit;
+  friend bool operator==(const UnitMember&, const UnitMember&) = default;
+};
+
 struct LinkedBound {
   int64_t low = 0;
   uint64_t count = 0;
@@ -222,8 +230,10 @@ struct Image {
   uint32_t input_bytes = 0;  // process image sizes
   uint32_t output_bytes = 0;
   std::vector<Device> devices;
-  std::vector<PouContent> contents;  // by POU; none in images before version 11
+  std::vector<PouContent> contents;   // by POU; none in images before version 11
   base::SharedVector<HeldPart> held;  // sorted, none twice; none in images before version 13
+  // Sorted by folded name, none twice; none in images before version 19.
+  std::vector<UnitMember> unit_members;
   Schedule schedule = Schedule::kSendFirst;
 
   // Live program instances in declaration order.

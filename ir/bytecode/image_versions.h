@@ -22,6 +22,14 @@ inline constexpr uint32_t kImageVersionOfTaskExchangeAndSources = 16;
 // The version of images with a migration from another type (LinkedMigration::from).
 inline constexpr uint32_t kImageVersionOfOtherTypes = 17;
 inline constexpr uint32_t kImageVersionOfOtherTypesAndSources = 18;
-inline constexpr uint32_t kLastImageVersion = kImageVersionOfOtherTypesAndSources;
+// The version of images with units that are not those of POUs (Image::unit_members).
+inline constexpr uint32_t kImageVersionOfUnits = 19;
+inline constexpr uint32_t kImageVersionOfUnitsAndSources = 20;
+inline constexpr uint32_t kLastImageVersion = kImageVersionOfUnitsAndSources;
+
+// From the first one with sources on, each even version has them, and the odd one before it not.
+constexpr bool version_has_sources(uint32_t version) {
+  return version >= kImageVersionOfSources && version % 2 == 0;
+}
 
 }  // namespace ir

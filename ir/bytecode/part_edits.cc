@@ -10,6 +10,7 @@ namespace {
 
 struct Row {
   std::string name;
+  std::string unit = {};
   base::Digest original{};
   base::Digest edited{};
 };
@@ -29,17 +30,19 @@ std::vector<PartEdit> part_edits(const std::vector<Part>& original, const std::v
   for (const Part& part : original) {
     Row& row = rows[{part.kind, fold_name(part.name)}];
     row.name = part.name;
+    row.unit = part.unit;
     row.original = part.identity;
   }
   for (const Part& part : edited) {
     Row& row = rows[{part.kind, fold_name(part.name)}];
     row.name = part.name;
+    row.unit = part.unit;
     row.edited = part.identity;
   }
   std::vector<PartEdit> edits;
   for (const auto& [key, row] : rows) {
     if (row.original == row.edited) continue;
-    PartEdit edit{key.first, row.name, PartState::kOk, row.original, row.edited, {}};
+    PartEdit edit{key.first, row.name, PartState::kOk, row.original, row.edited, {}, row.unit};
     const Part* const here = find_part(target, key.first, row.name);
     if (here != nullptr) edit.here = here->identity;
     edit.state = state_of(edit);
@@ -54,7 +57,7 @@ std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_vi
   std::vector<PartEdit> of;
   for (const PartEdit& edit : edits) {
     const bool table = step == kTableStep;
-    const bool in = is_of_unit(edit.kind) ? !table && same_name(edit.name, step) : table;
+    const bool in = is_of_unit(edit.kind) ? !table && same_name(edit.unit, step) : table;
     if (in) of.push_back(edit);
   }
   return of;

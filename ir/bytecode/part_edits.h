@@ -25,6 +25,7 @@ struct PartEdit {
   base::Digest original{};  // 0: the edit adds it
   base::Digest edited{};    // 0: the edit removes it
   base::Digest here{};      // 0: the target has none
+  std::string unit = {};    // Part::unit
 };
 
 // The parts that differ between `original` and `edited`, in their order; all three are those of

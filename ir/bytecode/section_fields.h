@@ -157,6 +157,10 @@ void pous_section(Archive& a, I& image, const Beside& beside) {
     pou_tables(a, pou, has_other ? &known->image.pous[number] : nullptr, beside.content,
                has_other ? known->places.pous[number] : ImagePlaces::Pou(), places.emplace_back());
   });
+  a.last_list(image.unit_members, 8, [&](auto& row) {
+    a(row.name);
+    a(row.unit);
+  });
 }
 
 template <class Archive, class I>
@@ -240,8 +244,7 @@ void section(Archive& a, I& image, uint32_t number, const Beside& beside) {
       });
     default:
       a.list(image.devices, 25, [&](auto& device) { device_fields(a, device); });
-      a.last_list(image.contents, sizeof(PouContent),
-                  [&](auto& content) { a(content.identity); });
+      a.last_list(image.contents, sizeof(PouContent), [&](auto& content) { a(content.identity); });
       return a.last_list(image.held, 9, [&](auto& row) {
         a(row.pou);
         a.enumerator(row.what.kind, 3);

@@ -234,6 +234,11 @@ base::Status verify_contents(const Image& image) {
     }
     before = &row;
   }
+  for (size_t i = 1; i < image.unit_members.size(); ++i) {
+    const std::string& name = image.unit_members[i].name;
+    if (fold_name(image.unit_members[i - 1].name) < fold_name(name)) continue;
+    return base::Error{base::Refusal::kBadFormat, "unit of `" + name + "`: not in order"};
+  }
   return base::Ok{};
 }
 

@@ -62,6 +62,16 @@ expect 0 stvm fleet status x.fleet --fleet fleet.toml
 said 'Filler'
 old=$(running one)
 
+# E-01: what agents publish are units as they know them; for those of the edit they are asked.
+mkdir joined
+cp v2.st joined
+printf '[units]\nJoined = ["Filler", "Main"]\n' >joined/stc.toml
+stc fleet v1.st joined -o joined.fleet 2>/dev/null
+expect 0 stvm fleet status joined.fleet --fleet fleet.toml --sign office.key
+said '^unit Joined +ok +ok *$|^unit Joined +ok *$'
+expect 7 stvm fleet status joined.fleet --fleet fleet.toml
+said 'R0420'
+
 # F-03: unsigned, and signed by somebody else. Nothing happens there.
 expect 7 fleet change --yes
 said 'R0420: agents carry out only what is signed'

@@ -17,7 +17,7 @@ for tool in stc stvm; do
     expect 0 $tool $way
     said "^$tool $version$"
     said "^commit +$commit$"
-    said '^image formats +7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18$'
+    said '^image formats +7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20$'
     said '^adapters +(none|(modbus|xml, plcopen, twincat|keys)(, keys)?)$'
     said '^native tier +(none|x86-64|aarch64)$'
     silent_on err

@@ -57,6 +57,7 @@ ir::Device simulated_device(ir::Image& image) {
 // What comes of the settings of a project, not of sources.
 void add_settings(ir::Image& image) {
   image.devices = {simulated_device(image)};
+  image.unit_members = {{"Clip", "Numbers"}, {"Sum", "Numbers"}};
   image.safe = {{1, 1, ir::SafeKind::kHoldThenValue, 1, 1000}, {16, 16, ir::SafeKind::kHold, 0, 0}};
   const std::vector<ir::Member>& globals = image.types[image.globals].members;
   for (uint32_t i = 0; i < globals.size(); ++i) {

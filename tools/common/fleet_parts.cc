@@ -28,7 +28,8 @@ base::Result<FleetParts> parts_of(const online_change::FleetFile& file) {
   if (!original.ok()) return original.error();
   auto edited = verified(file.edited, "its edited version");
   if (!edited.ok()) return edited.error();
-  FleetParts parts{ir::parts_of(original->image()), ir::parts_of(edited->image()), {}, {}};
+  const ir::UnitMembers& units = edited->image().unit_members;
+  FleetParts parts{ir::parts_of(original->image(), units), ir::parts_of(edited->image()), {}, {}};
   parts.edited_image.emplace(std::move(*edited));
   parts.free_table = file.free_table;
   return parts;

@@ -19,6 +19,11 @@ struct FleetParts {
   std::vector<ir::Part> edited;
   std::optional<ir::VerifiedImage> edited_image;  // always there; its table
   bool free_table = false;                        // E-17
+
+  // Those of a controller's program, in the units of the edit (E-01).
+  std::vector<ir::Part> of(const ir::Image& image) const {
+    return ir::parts_of(image, edited_image->image().unit_members);
+  }
 };
 base::Result<FleetParts> parts_of(const online_change::FleetFile& file);
 // A fleet file with what it changes.

@@ -28,6 +28,7 @@ std::span<const ProjectKey> project_keys();
 
 inline constexpr std::string_view kProjectFile = "stc.toml";
 inline constexpr std::string_view kDeviceTables = "devices.";
+inline constexpr std::string_view kUnitTable = "units.";
 inline constexpr std::string_view kWarningTable = "warnings.";
 
 struct ProjectFile {
@@ -48,8 +49,8 @@ struct ProjectFile {
 
 // kBadProject with line and column for what is no TOML; errors of read_text(), too.
 base::Result<ProjectFile> read_project_file(const std::string& path);
-// Reads the file and refuses unknown keys and wrong values; tables [devices.NAME] are not looked
-// into.
+// Reads the file and refuses unknown keys and wrong values; tables [devices.NAME] and [units] are
+// not looked into.
 base::Result<ProjectFile> read_checked_project_file(const std::string& path);
 
 // Why `code` cannot have a level in [warnings] or after --warn; "": it can.

@@ -45,7 +45,7 @@ std::string known_keys(std::string_view table) {
                          codes ? " and the codes of warnings" : ""});
   }
   return base::joined({"known are ", known, " and the tables [slack], [change], [outputs], ",
-                       "[format] and [devices.NAME]"});
+                       "[format], [units] and [devices.NAME]"});
 }
 
 std::string unknown_key(std::string_view key) {
@@ -143,7 +143,7 @@ base::Result<ProjectFile> read_checked_project_file(const std::string& path) {
   base::Result<ProjectFile> file = read_project_file(path);
   if (!file.ok()) return file;
   for (const auto& [name, value] : file->table) {
-    if (name.starts_with(kDeviceTables)) continue;
+    if (name.starts_with(kDeviceTables) || name.starts_with(kUnitTable)) continue;
     if (base::Status known = check_key(path, name, value); !known.ok()) return known.error();
   }
   return file;

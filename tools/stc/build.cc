@@ -48,7 +48,8 @@ base::Result<Version> link(const Compiled& compiled, const Project& project,
                            std::vector<ir::Device> devices, bool several,
                            const BuildOptions& options, const Embedding& embedding) {
   linker::Options link_options{project.slack,      options.base,      options.move_all,
-                               std::move(devices), project.safe.rows, project.jobs};
+                               std::move(devices), project.safe.rows, project.units.members(),
+                               project.jobs};
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, link_options);
   if (!image.ok()) return with_place(image.error(), project.devices);
   if (several) {
@@ -126,9 +127,14 @@ base::Result<std::vector<ResourceVersion>> build_resources(const Project& projec
     output_bytes = std::max(output_bytes, version->image.output_bytes);
     versions.push_back({std::move(made.resource), made.declared, std::move(*version)});
   }
-  if (several && versions.size() == resources->names.size()) {
-    base::Status safe = check_safe_settings(project.safe, output_bytes);
-    if (!safe.ok()) return safe.error();
+  if (several && versions.size() != resources->names.size()) return versions;
+  if (base::Status safe = check_safe_settings(project.safe, output_bytes); several && !safe.ok()) {
+    return safe.error();
+  }
+  std::vector<const ir::Image*> images;
+  for (const ResourceVersion& row : versions) images.push_back(&row.version.image);
+  if (base::Status units = check_unit_settings(project.units, images); !units.ok()) {
+    return units.error();
   }
   return versions;
 }

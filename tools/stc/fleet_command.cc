@@ -71,7 +71,7 @@ base::Result<Made> make_file(const tools::Options& options) {
   base::Result<Version> edited = open_version(options, {paths[1]}, {&original->image});
   if (!edited.ok()) return edited.error();
   Made made;
-  const std::vector<ir::Part> before = ir::parts_of(original->image);
+  const std::vector<ir::Part> before = ir::parts_of(original->image, edited->image.unit_members);
   made.edits = ir::part_edits(before, ir::parts_of(edited->image), before);
   if (made.edits.empty()) {
     return base::Error{base::Refusal::kNoChange,

@@ -50,6 +50,9 @@ base::Status apply_to_program(const ProjectFile& file, Project& project) {
   if (file.take<std::string>("name", project.name)) project.named = true;
   file.take<bool>("embed_sources", project.embed_sources);
   file.take<std::string>("resource", project.compile.resource);
+  base::Result<UnitSettings> units = parse_unit_settings(file);
+  if (!units.ok()) return units.error();
+  project.units = std::move(*units);
   const tools::TomlValue* const safe = file.find("outputs.safe");
   if (safe == nullptr) return base::Ok{};
   base::Result<SafeSettings> settings = parse_safe_settings(file.path, *safe);

@@ -17,6 +17,7 @@
 #include "tools/stc/project_sources.h"
 #include "tools/stc/read_file.h"
 #include "tools/stc/safe_settings.h"
+#include "tools/stc/unit_settings.h"
 
 namespace stc {
 
@@ -33,6 +34,7 @@ struct Project {
   linker::Slack slack;
   std::vector<ProjectDevice> devices;
   SafeSettings safe;
+  UnitSettings units;
 
   // For sources that travel with the image (embed.h).
   bool embed_sources = false;

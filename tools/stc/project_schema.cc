@@ -131,6 +131,15 @@ void devices_json(JsonWriter& json) {
   json.end_array().end_object().end_object();
 }
 
+void units_json(JsonWriter& json) {
+  json.key("units").begin_object().field("type", "object");
+  json.field("description",
+             "which POUs are one unit of an edit: a list of names, or PROGRAM.ACTION");
+  json.key("additionalProperties").begin_object();
+  text_list(json);
+  json.field("minItems", 1).end_object().end_object();
+}
+
 }  // namespace
 
 std::string project_schema() {
@@ -150,6 +159,7 @@ std::string project_schema() {
     if (table == tools::kWarningTable) levels_json(json);
     end_table(json);
   }
+  units_json(json);
   devices_json(json);
   json.end_object().end_object();
   return json.finish();

@@ -264,6 +264,7 @@ class Watch {
     settings.link.base = base_.get();
     settings.link.move_all = move_all_;
     settings.link.safe = project_.safe.rows;
+    settings.link.unit_members = project_.units.members();
     settings.link.jobs = project_.jobs;
     auto devices = devices_of(project_.devices, {}, {});
     broken_ = !devices.ok();
@@ -301,6 +302,9 @@ class Watch {
         if (diagnostics.has_errors()) return source_errors(diagnostics);  // warnings that are
         base::Status safe = check_safe_settings(project_.safe, (*image)->output_bytes);
         if (!safe.ok()) return safe.error();
+        const ir::Image* const program = &**image;
+        base::Status units = check_unit_settings(project_.units, {&program, 1});
+        if (!units.ok()) return units.error();
         const auto* tests = target_.is_for_tests() ? &build_->test_cases() : nullptr;
         return target_.take(**image, project_,
                             {built_since(before), saved_, seen_, Clock::now(), tests});

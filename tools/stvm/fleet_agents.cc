@@ -320,7 +320,13 @@ FleetRow FleetAgents::look_at(const FleetEdit* edit, const FleetTalk& talk,
   }
   row.outcome = FleetOutcome::kReached;
   if (edit == nullptr) return row;
-  base::Status fits = check_parts(*edit, known->about->parts, base::Ok{}, row);
+  // What it has published are units as it knows them: those of the edit need its image.
+  const bool same_units = edit->parts.edited_image->image().unit_members.empty();
+  base::Result<Program*> program =
+      same_units ? base::Result<Program*>(nullptr) : program_of(row.from, member);
+  if (!program.ok()) return talk.failed(std::move(row), program.error());
+  base::Status fits = same_units ? check_parts(*edit, known->about->parts, base::Ok{}, row)
+                                 : check_parts(*edit, (*program)->image, row);
   return fits.ok() ? row : talk.ended(std::move(row), FleetOutcome::kRefused, fits.error());
 }
 

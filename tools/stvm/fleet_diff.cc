@@ -79,7 +79,7 @@ std::string identity_text(const base::Digest& identity) {
 FleetDifference fleet_difference(const ir::Image& one, const ir::Image& other) {
   FleetDifference out;
   const std::vector<ir::Part> here = ir::parts_of(one);
-  const std::vector<ir::Part> there = ir::parts_of(other);
+  const std::vector<ir::Part> there = ir::parts_of(other, one.unit_members);
   std::map<std::pair<ir::PartKind, std::string>, PartDifference> rows;
   for (const ir::Part& part : here) {
     rows[{part.kind, base::fold_name(part.name)}] = {part.kind, part.name, part.identity, {}};

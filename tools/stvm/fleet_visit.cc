@@ -85,7 +85,7 @@ FleetRow FleetVisit::not_done(FleetRow row, const base::Result<Outcome>& outcome
 
 base::Status check_parts(const FleetEdit& edit, const ir::VerifiedImage& image, FleetRow& row) {
   row.table = tools::own_table_edits(edit.parts, image.image());
-  return check_parts(edit, ir::parts_of(image.image()),
+  return check_parts(edit, edit.parts.of(image.image()),
                      online_change::check_table(row.table, "its own table"), row);
 }
 

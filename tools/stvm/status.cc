@@ -268,7 +268,7 @@ base::Result<std::vector<UnitView>> look_at_units(const std::vector<std::string>
     if (!before.ok()) return before.error();
     base::Result<ir::VerifiedImage> image = ir::verify(std::move(*before));
     if (!image.ok()) return image.error();
-    steps.push_back({std::move(edit), ir::parts_of(image->image())});
+    steps.push_back({std::move(edit), ir::parts_of(image->image(), running->image().unit_members)});
   }
   return unit_views(*rows, running->image(), steps, patterns);
 }

@@ -160,6 +160,31 @@ TEST(Image, E04_HeldPartsAreStoredWhereThereAreSome) {
   }
 }
 
+// Units that are not those of POUs are stored where there are some, behind the POUs (E-01).
+TEST(Image, E01_UnitMembersAreStoredWhereThereAreSome) {
+  constexpr size_t kVersionAt = 8;
+  ir::Image image = sample::busy_image();
+  image.unit_members = {{"Line.Fill", "Filling"}, {"pump", "Pumping"}};
+  base::Bytes bytes = ir::encode(image);
+  EXPECT_EQ(bytes[kVersionAt], 19);
+  const auto decoded = ir::decode(bytes);
+  ASSERT_TRUE(decoded.ok()) << decoded.error().text;
+  EXPECT_EQ(decoded->unit_members, image.unit_members);
+  EXPECT_EQ(ir::encode(*decoded), bytes);
+  EXPECT_TRUE(ir::verify(bytes).ok());
+  for (const uint8_t version : {7, 11, 13, 17, 18, 20, 21}) {
+    bytes[kVersionAt] = version;
+    EXPECT_EQ(ir::decode(bytes).error().refusal, Refusal::kBadFormat) << int{version};
+  }
+  // Rows in another order, and one name twice.
+  ir::Image bad = image;
+  std::swap(bad.unit_members[0], bad.unit_members[1]);
+  EXPECT_EQ(ir::verify(ir::encode(bad)).error().refusal, Refusal::kBadFormat);
+  bad = image;
+  bad.unit_members[0].name = "PUMP";
+  EXPECT_EQ(ir::verify(ir::encode(bad)).error().refusal, Refusal::kBadFormat);
+}
+
 // The header says a length that the limit allows, and one byte more.
 TEST(Image, LargestImage) {
   constexpr size_t kLengthAt = 12;
