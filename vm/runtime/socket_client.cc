@@ -69,7 +69,7 @@ base::Result<Descriptor> SocketClient::open(const std::string& directory, For wh
     return base::Error{base::Refusal::kNotRunning,
                        "no controller runs in " + directory + ": " + std::strerror(errno)};
   }
-  base::Result<std::string> peer = trusted_peer(socket.get());
+  base::Result<std::string> peer = trusted_peer(socket.get(), place->only_writer());
   if (!peer.ok()) {
     return base::Error{base::Refusal::kNotRunning,
                        "what runs in " + directory + " is not trusted: " + peer.error().text};

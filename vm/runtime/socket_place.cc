@@ -36,6 +36,12 @@ SocketAddress SocketPlace::file() const {
   return out;
 }
 
+uid_t SocketPlace::only_writer() const {
+  struct stat info {};
+  const bool known = ::fstat(directory_.get(), &info) == 0;
+  return known && (info.st_mode & (S_IWGRP | S_IWOTH)) == 0 ? info.st_uid : 0;
+}
+
 // The first byte of such a name is zero.
 SocketAddress SocketPlace::without_file() const {
   struct stat info {};
@@ -45,8 +51,8 @@ SocketAddress SocketPlace::without_file() const {
   const int length = std::snprintf(out.name.sun_path + 1, sizeof out.name.sun_path - 1,
                                    "stvm-%llx-%llx", static_cast<unsigned long long>(info.st_dev),
                                    static_cast<unsigned long long>(info.st_ino));
-  out.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1) +
-             static_cast<socklen_t>(length);
+  out.size =
+      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1) + static_cast<socklen_t>(length);
   return out;
 }
 

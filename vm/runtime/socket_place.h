@@ -26,6 +26,9 @@ class SocketPlace {
 
   SocketAddress file() const;
   SocketAddress without_file() const;
+  // Who alone can put a socket there, beside root: the owner of a directory that nobody else writes
+  // into. 0: others can.
+  uid_t only_writer() const;
   // The file system takes no new files.
   bool read_only() const;
   // Removes the file of a controller that has ended without removing it.

@@ -203,22 +203,28 @@ TEST_F(SocketTest, AnIdleClientConnectsAgain) {
   EXPECT_TRUE((*client)->exchange(encode(Request{.command = Command::kStatus})).ok());
 }
 
+constexpr uid_t kNobody = 65534;
+
 TEST(Peer, IsRootOrOneself) {
-  EXPECT_TRUE(is_trusted(0, 0));
-  EXPECT_TRUE(is_trusted(0, 1000));
-  EXPECT_TRUE(is_trusted(1000, 1000));
-  EXPECT_FALSE(is_trusted(1001, 1000));
-  EXPECT_FALSE(is_trusted(1000, 0)) << "a socket that root did not make";
+  EXPECT_TRUE(is_trusted(0, 0, 0));
+  EXPECT_TRUE(is_trusted(0, 1000, 0));
+  EXPECT_TRUE(is_trusted(1000, 1000, 0));
+  EXPECT_FALSE(is_trusted(1001, 1000, 0));
+  EXPECT_FALSE(is_trusted(1000, 0, 0)) << "a socket that root did not make";
 }
 
-// Neither side talks to another user, whatever the folder permits. Only root can be both.
-TEST_F(SocketTest, OfAnotherUserIsNotTrusted) {
-  if (::geteuid() != 0) GTEST_SKIP() << "needs two users";
-  server_.reset();
-  std::filesystem::permissions(directory_, std::filesystem::perms::all);
-  const std::string path = directory_ + "/" + kSocketName;
+// a service has a user of its own; root's tools ask it in that user's folder.
+TEST(Peer, R12_RootAsksWhomTheFolderBelongsTo) {
+  EXPECT_TRUE(is_trusted(995, 0, 995));
+  EXPECT_FALSE(is_trusted(996, 0, 995));
+  EXPECT_FALSE(is_trusted(995, 1000, 995)) << "only root can do anything there anyway";
+}
+
+// Somebody else listens in `directory` while root connects there.
+base::Status connect_to_another(const std::string& directory) {
+  const std::string path = directory + "/" + kSocketName;
   int ready[2];
-  ASSERT_EQ(::pipe(ready), 0);
+  EXPECT_EQ(::pipe(ready), 0);
   const pid_t other = ::fork();
   if (other == 0) {
     sockaddr_un address{};
@@ -226,7 +232,7 @@ TEST_F(SocketTest, OfAnotherUserIsNotTrusted) {
     std::memcpy(address.sun_path, path.data(), path.size());
     const int listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
     const bool listens =
-        ::setuid(65534) == 0 &&
+        ::setuid(kNobody) == 0 &&
         ::bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 &&
         ::listen(listener, 4) == 0;
     (void)!::write(ready[1], listens ? "y" : "n", 1);
@@ -234,16 +240,40 @@ TEST_F(SocketTest, OfAnotherUserIsNotTrusted) {
     ::_exit(0);
   }
   char answer = 0;
-  ASSERT_EQ(::read(ready[0], &answer, 1), 1);
-  ASSERT_EQ(answer, 'y');
-  auto client = SocketClient::connect(directory_);
+  EXPECT_EQ(::read(ready[0], &answer, 1), 1);
+  EXPECT_EQ(answer, 'y');
+  auto client = SocketClient::connect(directory);
   ::kill(other, SIGKILL);
   ::waitpid(other, nullptr, 0);
   ::close(ready[0]);
   ::close(ready[1]);
-  ASSERT_FALSE(client.ok());
-  EXPECT_EQ(client.error().refusal, base::Refusal::kNotRunning);
-  EXPECT_NE(client.error().text.find("is not trusted"), std::string::npos);
+  if (client.ok()) return base::Ok{};
+  return client.error();
+}
+
+// Neither side talks to another user, whatever the folder permits. Only root can be both.
+TEST_F(SocketTest, OfAnotherUserIsNotTrusted) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs two users";
+  server_.reset();
+  std::filesystem::permissions(directory_, std::filesystem::perms::all);
+  for (const uid_t owner : {uid_t{0}, kNobody}) {
+    ASSERT_EQ(::chown(directory_.c_str(), owner, 0), 0);
+    const base::Status connected = connect_to_another(directory_);
+    ASSERT_FALSE(connected.ok()) << "anybody can have put the socket there";
+    EXPECT_EQ(connected.error().refusal, base::Refusal::kNotRunning);
+    EXPECT_NE(connected.error().text.find("is not trusted"), std::string::npos);
+    std::filesystem::remove(directory_ + "/" + kSocketName);
+  }
+}
+
+// a service of systemd runs as a user of its own, in that user's folder.
+TEST_F(SocketTest, R12_RootTrustsWhoAloneWritesIntoTheFolder) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs two users";
+  server_.reset();
+  std::filesystem::permissions(directory_, std::filesystem::perms::owner_all);
+  ASSERT_EQ(::chown(directory_.c_str(), kNobody, 0), 0);
+  const base::Status connected = connect_to_another(directory_);
+  EXPECT_TRUE(connected.ok()) << connected.error().text;
 }
 
 TEST_F(SocketTest, AnotherUserIsSentAway) {
