@@ -16,6 +16,7 @@ need python3 python3
 [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
 need mbpoll mbpoll
 need curl curl
+need xmllint libxml2-utils
 [ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
 [ -e /usr/include/openssl/evp.h ] || missing="$missing libssl-dev"
 [ -e /usr/include/mosquitto.h ] || missing="$missing libmosquitto-dev"

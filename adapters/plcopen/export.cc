@@ -157,7 +157,7 @@ namespace {
 
 const char* name_space(Edition form) {
   return form == Edition::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
-                                : "http://www.plcopen.org/xml/tc6_0201";
+                                   : "http://www.plcopen.org/xml/tc6_0201";
 }
 
 void put_headers(Node project, const std::string& name) {
@@ -176,6 +176,46 @@ void put_headers(Node project, const std::string& name) {
     scaling.append_attribute("x") = "1";
     scaling.append_attribute("y") = "1";
   }
+}
+
+// The lists of pins, of which drawings that others wrote leave out empty ones.
+void put_pin_lists(Node block) {
+  Node before;
+  for (const char* const list : {"inputVariables", "inOutVariables", "outputVariables"}) {
+    Node there = block.child(list);
+    if (!there) {
+      const Node place = before ? before : block.child("position");
+      there = place ? block.insert_child_after(list, place) : block.prepend_child(list);
+    }
+    before = there;
+  }
+}
+
+// Of an action in its block.
+void put_relative_position(Node action) {
+  if (action.child("relPosition")) return;
+  Node position = action.prepend_child("relPosition");
+  position.append_attribute("x") = 0;
+  position.append_attribute("y") = 0;
+}
+
+// What the schema of TC6 demands and means nothing, also in drawings that are written as they were
+// read: what vendors add stands behind everything else of its element but documentation; no list of
+// pins is missing, nor the place of an action.
+void follow_schema(Node node) {
+  const std::string_view name = node.name();
+  if (name == "block") put_pin_lists(node);
+  if (name == "action" && std::string_view(node.parent().name()) == "actionBlock") {
+    put_relative_position(node);
+  }
+  const Node add = node.child("addData");
+  const Node documentation = node.child("documentation");
+  if (add && documentation) {
+    node.insert_move_before(add, documentation);
+  } else if (add) {
+    node.append_move(add);
+  }
+  for (Node child : node.children()) follow_schema(child);
 }
 
 // One message for each POU or type; for nobody's, what is said of configurations.
@@ -216,6 +256,7 @@ std::optional<std::string> export_document(const ExportInput& input,
   const uint32_t before = diagnostics.error_count();
   Writer writer(input, diagnostics);
   writer.project(project);
+  follow_schema(project);
   pugi::xml_document other;
   if (input.form == Edition::kIec10) {
     for (const auto& [owner, texts] : to_iec10(project, other)) {

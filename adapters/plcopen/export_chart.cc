@@ -13,6 +13,7 @@ namespace {
 
 constexpr uint32_t kRow = 160;  // units between steps
 constexpr uint32_t kColumn = 200;
+constexpr int kActionHeight = 20;
 constexpr const char* kQualifiers[] = {"N", "R", "S", "L", "D", "P", "P0", "P1", "SD", "DS", "SL"};
 
 }  // namespace
@@ -178,6 +179,7 @@ class ChartWriter {
     node.append_child("connectionPointOutAction").append_attribute("formalParameter") = "";
     Node block = element("actionBlock", x + 60, y);
     hang(block, step_id(index));
+    uint32_t row = 0;
     for (const frontend::ActionUse& use : step.uses) {
       Node action = block.append_child("action");
       action.append_attribute("localId") = ++ids_;
@@ -192,6 +194,9 @@ class ChartWriter {
       if (use.indicators.size() > 1) {
         writer_.fail(use.span, "an action with several indicators has no element in PLCopen XML");
       }
+      Node relative = action.append_child("relPosition");
+      relative.append_attribute("x") = 0;
+      relative.append_attribute("y") = kActionHeight * static_cast<int>(row++);
       action.append_child("reference").append_attribute("name") =
           std::string(use.action.text).c_str();
     }

@@ -329,7 +329,9 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
     }
   }
   const bool inline_negation = element.kind == Kind::kSource;
-  Node out = node(element_name(element.kind), place, ids_[number]);
+  // A rail that is left of a jump: a function block diagram has none.
+  const bool as_true = element.kind == Kind::kLeftRail && body_.language == network::Language::kFbd;
+  Node out = node(as_true ? "inVariable" : element_name(element.kind), place, ids_[number]);
   if (element.position.known && element.position.width > 0) {
     out.append_attribute("width") = element.position.width;
     out.append_attribute("height") = element.position.height;
@@ -348,8 +350,9 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
   }
   if (element.kind != Kind::kBlock && !element.outputs.empty()) {
     Node point = out.append_child("connectionPointOut");
-    if (element.kind == Kind::kLeftRail) point.append_attribute("formalParameter") = "";
+    if (element.kind == Kind::kLeftRail && !as_true) point.append_attribute("formalParameter") = "";
   }
+  if (as_true) put_operand(out, "expression", "TRUE");
   if (element.kind == Kind::kContact || element.kind == Kind::kCoil) {
     put_operand(out, "variable", element.operand.text);
   } else if (element.kind == Kind::kSource || element.kind == Kind::kSink) {

@@ -16,8 +16,18 @@ namespace {
 
 constexpr const char* kElementary[] = {"BOOL",  "BYTE", "WORD",  "DWORD", "LWORD", "SINT",  "INT",
                                        "DINT",  "LINT", "USINT", "UINT",  "UDINT", "ULINT", "REAL",
-                                       "LREAL", "TIME", "DATE",  "TOD",   "DT",    "LTIME", "LDATE",
-                                       "LTOD",  "LDT",  "CHAR",  "WCHAR"};
+                                       "LREAL", "TIME", "DATE",  "TOD",   "DT"};
+// The schema of TC6 is older than these: they are names there.
+constexpr const char* kOfEdition3[] = {"LTIME", "LDATE", "LTOD", "LDT", "CHAR", "WCHAR"};
+
+const char* element_of(std::string_view name, Edition form) {
+  const auto same = [&](const char* known) { return base::same_name(name, known); };
+  const auto found = std::find_if(std::begin(kElementary), std::end(kElementary), same);
+  if (found != std::end(kElementary)) return *found;
+  if (form != Edition::kIec10) return nullptr;
+  const auto newer = std::find_if(std::begin(kOfEdition3), std::end(kOfEdition3), same);
+  return newer != std::end(kOfEdition3) ? *newer : nullptr;
+}
 
 }  // namespace
 
@@ -47,9 +57,10 @@ bool Writer::put_plain_type(Node parent, const Spec& spec) {
   switch (spec.kind) {
     case SpecKind::kNamed: {
       if (spec.has_args) return false;
-      for (const char* name : kElementary) {
-        if (spec.qualifiers.count != 0 || !base::same_name(spec.name.text, name)) continue;
-        parent.append_child(name);
+      const char* const element =
+          spec.qualifiers.count == 0 ? element_of(spec.name.text, in_.form) : nullptr;
+      if (element != nullptr) {
+        parent.append_child(element);
         return true;
       }
       parent.append_child("derived").append_attribute("name") = flat(spec.span).c_str();

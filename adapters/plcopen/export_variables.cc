@@ -84,6 +84,9 @@ bool Writer::put_list(Node parent, const VarBlock& block, const std::string& nam
   if (!declared) return true;
   const char* element = list_name(block.section);
   if (element == nullptr) return false;
+  // In a POU, TC6 has elements for variables there, and none for what they lead to.
+  const bool in_pou = std::string_view(parent.name()) == "interface";
+  if (in_pou && block.section == VarSection::kAccess && in_.form != Edition::kIec10) return false;
   Node list = parent.append_child(element);
   if (!name.empty()) list.append_attribute("name") = name.c_str();
   const std::string head = flat(block.span);

@@ -44,6 +44,32 @@ expect 1 stc export connected.st -o x.xml --without-sources
 said 'E1084.*connections of a program instance'
 [ ! -e x.xml ] || fail "a document was written in spite of errors"
 
+# What the schema demands, also of drawings that are written as they were read
+# (tests/cli/export_schema.sh has the schema itself).
+cat >schema.st <<'S'
+FUNCTION_BLOCK F VAR t : LTIME; c : CHAR; END_VAR END_FUNCTION_BLOCK
+{attribute 'note' := 'x'} PROGRAM P VAR f1 : F; END_VAR f1(); ACTION Go: f1(); END_ACTION END_PROGRAM
+S
+expect 0 stc export schema.st -o schema.xml
+grep -q '<derived name="LTIME" />' schema.xml || fail "an element that TC6 does not have"
+expect 0 stc export chart.xml -o chart-again.xml
+python3 - <<'P' || fail "not in the order of the schema"
+import xml.etree.ElementTree as tree
+def local(node):
+    return node.tag.rsplit("}", 1)[-1]
+for name in ("schema.xml", "chart-again.xml"):
+    for node in tree.parse(name).iter():
+        kinds = [local(child) for child in node]
+        if "addData" in kinds:
+            assert kinds.index("addData") == len(kinds) - 1 - ("documentation" in kinds), (name, kinds)
+        if local(node) == "actionBlock":
+            for action in node.findall("{*}action"):
+                assert local(action[0]) == "relPosition", name
+        if local(node) == "block":
+            pins = [kind for kind in kinds if kind.endswith("Variables")]
+            assert pins == ["inputVariables", "inOutVariables", "outputVariables"], (name, pins)
+P
+
 # Attributes of members, of enumerators and instances, and words that have no element, stay.
 cat >words.st <<'S'
 TYPE Mode : ({attribute 'shown' := 'off'} Off, On); END_TYPE
