@@ -30,6 +30,7 @@ install(DIRECTORY examples DESTINATION ${docs}/stc COMPONENT stc USE_SOURCE_PERM
 # Where Ansible looks for modules by itself, below /usr.
 install(FILES ansible/stvm_change.py DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/ansible/plugins/modules
         COMPONENT stc)
+install(FILES docs/FLEET.md docs/KEYS.md DESTINATION ${docs}/stvm-agent COMPONENT stvm-agent)
 install(FILES docs/RUNNING.md docs/SECURITY.md docs/KEYS.md docs/IO.md DESTINATION ${docs}/stvm COMPONENT stvm)
 
 foreach(tool stc stvm)
@@ -48,14 +49,16 @@ foreach(tool stc stvm)
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/fish/vendor_completions.d COMPONENT ${tool})
 endforeach()
 
-# The unit names the program where it is installed, which is known then only.
-install(CODE "
-  file(READ \"${CMAKE_SOURCE_DIR}/packaging/systemd/stvm@.service\" unit)
-  string(REPLACE /usr/bin/stvm \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/stvm\" unit \"\${unit}\")
-  set(place \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/stvm@.service\")
-  message(STATUS \"Installing: \${place}\")
-  file(WRITE \"\${place}\" \"\${unit}\")
-" COMPONENT stvm)
+# The units name the program where it is installed, which is known then only.
+foreach(unit stvm stvm-agent)
+  install(CODE "
+    file(READ \"${CMAKE_SOURCE_DIR}/packaging/systemd/${unit}@.service\" unit)
+    string(REPLACE /usr/bin/stvm \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/stvm\" unit \"\${unit}\")
+    set(place \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/system/${unit}@.service\")
+    message(STATUS \"Installing: \${place}\")
+    file(WRITE \"\${place}\" \"\${unit}\")
+  " COMPONENT ${unit})
+endforeach()
 install(FILES packaging/systemd/stvm.conf DESTINATION lib/sysusers.d COMPONENT stvm)
 
 set(CPACK_GENERATOR DEB)
@@ -76,6 +79,7 @@ set(CPACK_DEBIAN_STVM_PACKAGE_DEPENDS systemd)
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_NAME stvm-agent)
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_DEPENDS "stvm (= ${CPACK_PACKAGE_VERSION})")
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_RECOMMENDS curl)
+set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/agent/postinst)
 set(CPACK_DEBIAN_STC_DESCRIPTION "compiler of IEC 61131-3 programs
 Structured Text, ladder, function block diagrams, charts and instruction
 lists become an image for stvm, a soft PLC whose running program can be
