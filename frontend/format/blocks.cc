@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "base/limits.h"
+#include "frontend/format/branches.h"
 #include "frontend/format/diagrams.h"
 #include "frontend/format/outliner.h"
 #include "ir/types/types.h"
@@ -25,27 +26,6 @@ Outline Outliner::run() {
   return std::move(out_);
 }
 
-namespace {
-
-// The first word of each pragma in front of token `i`.
-template <class Visit>
-void for_each_pragma(const Text& text, uint32_t i, Visit visit) {
-  const Gap& gap = text.gap(i);
-  for (uint32_t p = gap.first; p < gap.first + gap.count; ++p) {
-    const Piece& piece = text.piece(p);
-    if (piece.kind != PieceKind::kPragma) continue;
-    std::string_view word = text.piece_text(piece).substr(1);
-    word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
-    visit(word.substr(0, word.find_first_of(" \t}(")));
-  }
-}
-
-bool begins_other_branch(std::string_view word) {
-  return ir::same_name(word, "ELSE") || ir::same_name(word, "ELSIF");
-}
-
-}  // namespace
-
 // Branches of conditional compilation begin with the same open blocks, as only one of them counts.
 void Outliner::follow_conditions() {
   for_each_pragma(text_, at_, [this](std::string_view word) {
@@ -59,15 +39,6 @@ void Outliner::follow_conditions() {
       conditions_.pop_back();
     }
   });
-}
-
-// Does a branch end in front of token `i`?
-bool Outliner::ends_branch(uint32_t i) const {
-  bool ends = false;
-  for_each_pragma(text_, i, [&](std::string_view word) {
-    ends = ends || begins_other_branch(word) || ir::same_name(word, "END_IF");
-  });
-  return ends;
 }
 
 void Outliner::push(TokenKind end, BlockKind kind, uint32_t inner) {

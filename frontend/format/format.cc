@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/format/branches.h"
 #include "frontend/format/diagrams.h"
 #include "frontend/format/same_program.h"
 #include "frontend/format/writer.h"
@@ -42,6 +43,19 @@ uint32_t open_diagram(const base::SourceMap& sources, uint32_t file, const Token
     }
   }
   return text.token_count();
+}
+
+// What is no sound text in a branch that does not count, so that nobody else has said it.
+bool report_open_branch(const base::SourceMap& sources, uint32_t file,
+                        base::Diagnostics& diagnostics) {
+  base::Diagnostics lexical;
+  const TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
+  const uint32_t open = formatting::open_in_branch(formatting::Text(sources, file, tokens));
+  if (open >= tokens.tokens.size()) return false;
+  diagnostics.add(base::DiagnosticCode::kUnclosedBracket, tokens.tokens[open].span(),
+                  "this bracket is open where its branch of conditional compilation ends",
+                  "close it in the branch");
+  return true;
 }
 
 std::string laid_out(const base::SourceMap& sources, uint32_t file, const TokenList& tokens,
@@ -89,8 +103,8 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   if (errors != 0) return errors_in(sources, file, errors);
   auto formatted = format_tokens(sources, file, options, diagnostics);
   auto of_list = [](const auto& node) { return node.instruction; };
-  bool rows_count = std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) ||
-                    tree.exprs.any_of(of_list);
+  bool rows_count =
+      std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) || tree.exprs.any_of(of_list);
   if (!formatted.ok() || !rows_count) return formatted;
   // The ends of rows are part of an instruction list, and no token shows them.
   base::SourceMap result;
@@ -100,6 +114,7 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   parse(result, 0, after, other);
   // Words of diagrams may change their case.
   if (ir::same_name(print(after), print(tree))) return formatted;
+  if (report_open_branch(sources, file, diagnostics)) return errors_in(sources, file, 1);
   return base::Error{
       base::Refusal::kInternal,
       std::string(sources.file_name(file)) +

@@ -1,3 +1,4 @@
+#include "frontend/format/branches.h"
 #include "frontend/format/diagrams.h"
 #include "frontend/format/outliner.h"
 #include "frontend/format/spacing.h"
@@ -255,7 +256,7 @@ uint32_t Outliner::behind_name(uint32_t i) const {
   // `x S= y` is a statement, whatever stands before it.
   if (!is_name(text_.kind(i)) || is_set_assignment(text_, i + 1)) return i;
   // A word of a branch that is left out has no name in the instruction after it.
-  if (blocks_.back().instructions && ends_branch(i)) return i;
+  if (blocks_.back().instructions && ends_branch(text_, i)) return i;
   for (++i; text_.kind(i) == TokenKind::kDot && is_name(text_.kind(i + 1)); i += 2) {
   }
   return i;

@@ -33,7 +33,6 @@ class Outliner {
 
   // --- blocks.cc
   void follow_conditions();
-  bool ends_branch(uint32_t i) const;
   TokenKind kind(uint32_t ahead = 0) const { return text_.kind(at_ + ahead); }
   Block& top() { return blocks_.back(); }
   void push(TokenKind end, BlockKind kind, uint32_t inner);

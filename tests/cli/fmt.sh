@@ -70,3 +70,10 @@ if ls -R | grep -q tmp; then fail "temporary files left"; fi
 printf '\357\273\277program p\r\n(* \344 *)\r\nend_program\r\n' >dos.st
 expect 0 stc fmt dos.st
 printf '\357\273\277PROGRAM p\r\n  (* \344 *)\r\nEND_PROGRAM\r\n' | cmp - dos.st || fail "bytes"
+
+# What is no sound text in a branch that does not count is an error with its place, and no internal one.
+printf 'PROGRAM P VAR n : INT; END_VAR\n{IF defined(FAST)}\nLD (1\n{ELSE}\nLD 2\nADD 1\n{END_IF}\nST n\nEND_PROGRAM\n' >branch.st
+cp branch.st kept.st
+expect 1 stc fmt branch.st
+said '^branch.st:3:4: error.E1011.: this bracket is open where its branch'
+cmp branch.st kept.st || fail "it was laid out"
