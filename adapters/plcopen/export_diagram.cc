@@ -361,21 +361,6 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
   Writer::put_documentation(out, element.comment);
 }
 
-bool Writer::is_in_out(const std::string& type, const std::string& pin) const {
-  for (const Pou& pou : tree_.pous) {
-    if (!base::same_name(pou.name.text, type)) continue;
-    for (const frontend::VarBlock& block : pou.blocks) {
-      if (block.section != frontend::VarSection::kInOut) continue;
-      for (const frontend::VarDecl& decl : block.vars) {
-        for (const frontend::Name& name : decl.names) {
-          if (base::same_name(name.text, pin)) return true;
-        }
-      }
-    }
-  }
-  return false;
-}
-
 void Writer::diagram(Node body, const network::Body& drawn, const std::string& path) {
   const network::Body* best = &drawn;
   if (in_.kept != nullptr) {

@@ -71,6 +71,21 @@ void Writer::interface(Node owner, const Pou& pou, const char* kind) {
   if (*kind != 0) put_declaration(owner, head);
 }
 
+bool Writer::is_in_out(const std::string& type, const std::string& pin) const {
+  for (const Pou& pou : tree_.pous) {
+    if (!base::same_name(pou.name.text, type)) continue;
+    for (const frontend::VarBlock& block : pou.blocks) {
+      if (block.section != frontend::VarSection::kInOut) continue;
+      for (const frontend::VarDecl& decl : block.vars) {
+        for (const frontend::Name& name : decl.names) {
+          if (base::same_name(name.text, pin)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 void Writer::put_kept(Node owner, const std::string& path) {
   if (in_.kept == nullptr) return;
   auto found = in_.kept->data.find(base::fold_name(path));

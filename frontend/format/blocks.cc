@@ -13,8 +13,10 @@ Outline outline(const Text& text, uint32_t indent) { return Outliner(text, inden
 
 Outline Outliner::run() {
   blocks_.push_back({});
-  while (kind() != TokenKind::kEnd) {
-    follow_conditions();
+  for (uint32_t followed = UINT32_MAX; kind() != TokenKind::kEnd;) {
+    // Once for each token: what ends a block in front of it takes no token.
+    if (followed != at_) follow_conditions();
+    followed = at_;
     if (top().kind == BlockKind::kDeclarations) {
       declaration();
     } else {

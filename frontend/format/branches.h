@@ -19,8 +19,8 @@ void for_each_pragma(const Text& text, uint32_t i, Visit visit) {
     const Piece& piece = text.piece(p);
     if (piece.kind != PieceKind::kPragma) continue;
     std::string_view word = text.piece_text(piece).substr(1);
-    word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
-    visit(word.substr(0, word.find_first_of(" \t}(")));
+    word.remove_prefix(std::min(word.find_first_not_of(" \t\r\n"), word.size()));
+    visit(word.substr(0, word.find_first_of(" \t\r\n}(")));
   }
 }
 
@@ -31,8 +31,8 @@ inline bool begins_other_branch(std::string_view word) {
 // Does a branch end in front of token `i`?
 bool ends_branch(const Text& text, uint32_t i);
 
-// The token of a bracket that is open where its branch ends; the number of tokens: there is none.
-// O(tokens).
+// The token of a bracket that is open where its branch ends, and not where another branch of the
+// same {IF ...} does; the number of tokens: there is none. O(tokens).
 uint32_t open_in_branch(const Text& text);
 
 }  // namespace frontend::formatting

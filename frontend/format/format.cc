@@ -52,9 +52,11 @@ bool report_open_branch(const base::SourceMap& sources, uint32_t file,
   const TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
   const uint32_t open = formatting::open_in_branch(formatting::Text(sources, file, tokens));
   if (open >= tokens.tokens.size()) return false;
-  diagnostics.add(base::DiagnosticCode::kUnclosedBracket, tokens.tokens[open].span(),
-                  "this bracket is open where its branch of conditional compilation ends",
-                  "close it in the branch");
+  diagnostics.add(
+      base::DiagnosticCode::kUnclosedBracket, tokens.tokens[open].span(),
+      "this bracket is open where its branch of conditional compilation ends, and not where "
+      "another one does",
+      "close it in the branch");
   return true;
 }
 
@@ -106,6 +108,7 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   bool rows_count =
       std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) || tree.exprs.any_of(of_list);
   if (!formatted.ok() || !rows_count) return formatted;
+  if (report_open_branch(sources, file, diagnostics)) return errors_in(sources, file, 1);
   // The ends of rows are part of an instruction list, and no token shows them.
   base::SourceMap result;
   result.add(std::string(sources.file_name(file)), *formatted);
@@ -114,7 +117,6 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   parse(result, 0, after, other);
   // Words of diagrams may change their case.
   if (ir::same_name(print(after), print(tree))) return formatted;
-  if (report_open_branch(sources, file, diagnostics)) return errors_in(sources, file, 1);
   return base::Error{
       base::Refusal::kInternal,
       std::string(sources.file_name(file)) +

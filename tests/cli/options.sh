@@ -24,7 +24,7 @@ for tool in stc stvm; do
   done
   expect 0 $tool --version --format json
   json "d['tool'] == '$tool' and d['version'] == '$version' and d['commit'] == '$commit'"
-  json 'd["image_formats"] == list(range(7, 19)) and isinstance(d["adapters"], list)'
+  json 'd["image_formats"] == list(range(7, 21)) and isinstance(d["adapters"], list)'
   expect 2 $tool version good.img
   said 'R0504: version: too many arguments: good.img'
 done

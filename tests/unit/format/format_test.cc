@@ -102,6 +102,19 @@ TEST(Format, DeepNestingIsNotRecursionWithoutEnd) {
   EXPECT_TRUE(format_tokens(sources, 0, {}, diagnostics).ok());
 }
 
+// Of text that is no program: what ends a block in front of a branch's first token takes no token,
+// so the branch must not begin its blocks anew for ever.
+TEST(Format, ABlockThatEndsInFrontOfAnotherBranch) {
+  base::SourceMap sources;
+  sources.add(
+      "a.st",
+      "PROGRAM VAR\n{IF defined(FAST)}\nLD (1\n{ELSE}\n  VAR level : RE\nLD 2\n{END_IF}\nST n\n"
+      "END_PROGRAM\n");
+  base::Diagnostics diagnostics;
+  (void)format_tokens(sources, 0, {}, diagnostics).ok();
+  EXPECT_FALSE(format(sources, 0, {}, diagnostics).ok());
+}
+
 std::string read(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
