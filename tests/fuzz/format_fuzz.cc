@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/check.h"
+#include "base/name_case.h"
 #include "frontend/format/format.h"
 #include "frontend/parse/parse.h"
 
@@ -20,21 +21,31 @@ bool is_no_program(const base::SourceMap& sources) {
   return diagnostics.has_errors();
 }
 
+// A drawing, or an instruction list in branches, is one by what stands in front of it in its row;
+// of text that is no program that may be another row when it is laid out.
+bool means_other_rows(const std::string& text) {
+  const std::string folded = base::fold_name(text);
+  return folded.find("{if") != folded.npos || folded.find("end_ladder") != folded.npos ||
+         folded.find("end_fbd") != folded.npos;
+}
+
 void check_format(std::string text, const FormatOptions& options, bool parsed) {
   auto run = parsed ? frontend::format : frontend::format_tokens;
   base::SourceMap sources;
   sources.add("fuzz.st", std::move(text));
   base::Diagnostics diagnostics;
   base::Result<std::string> once = run(sources, 0, options, diagnostics);
+  // Of text that is no program the check inside may say no: `a` and `S=1` in two rows is `a S= 1`
+  // in one.
+  const bool no_program = !parsed && is_no_program(sources);
   if (!once.ok()) {
-    // Of text that is no program the check inside may say no: `a` and `S=1` in two rows is `a S= 1`
-    // in one.
-    if (!parsed && is_no_program(sources)) return;
+    if (no_program) return;
     base::check(once.error().refusal == base::Refusal::kSourceErrors, once.error().text.c_str());
     return;
   }
   sources.add("formatted.st", *once);
   base::Result<std::string> twice = run(sources, 1, options, diagnostics);
+  if (no_program && means_other_rows(*once)) return;
   base::check(twice.ok(), "what was formatted can be formatted");
   base::check(*twice == *once, "formatting the result again changes nothing");
 }
