@@ -39,10 +39,11 @@ Steps all_steps(const EditImages& edit) {
   Steps steps;
   std::map<std::string, std::string> left;
   for (const PartEdit& part : edits_of(edit)) {
-    if (ir::is_of_unit(part.kind)) {
-      left.emplace(ir::fold_name(part.unit), part.unit);
-    } else {
+    const std::string step(ir::step_of(part, edit.edited.unit_members));
+    if (step == ir::kTableStep) {
       steps.table = true;
+    } else {
+      left.emplace(ir::fold_name(step), step);
     }
   }
   for (const std::string& name : units_of(edit.edited)) {

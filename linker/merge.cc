@@ -162,7 +162,7 @@ std::vector<PartEdit> merge_parts(const MergeInput& input) {
 
 base::Result<ir::Image> merge(const MergeInput& input, const MergeOptions& options) {
   std::vector<PartEdit> parts = merge_parts(input);
-  if (options.step) parts = ir::of_step(parts, *options.step);
+  if (options.step) parts = ir::of_step(parts, *options.step, input.edited.unit_members);
   if (base::Status good = check_parts(parts, options.matching); !good.ok()) return good.error();
   base::Result<Unlinked> edited = unlink(input.edited);
   if (!edited.ok()) return edited.error();

@@ -50,9 +50,8 @@ class Parts {
   }
 
  private:
-  void add(PartKind kind, const std::string& name, const base::ByteWriter& out,
-           const std::string& unit = {}) {
-    parts_.push_back({kind, name, base::sha256(out.bytes()), unit});
+  void add(PartKind kind, const std::string& name, const base::ByteWriter& out) {
+    parts_.push_back({kind, name, base::sha256(out.bytes())});
   }
 
   // What the sources say of each POU; of an image that does not know, what its code is.
@@ -73,7 +72,7 @@ class Parts {
         out.raw(image_.contents.empty() ? image_.pous[number].identity
                                         : image_.contents[number].identity);
       }
-      add(PartKind::kUnit, names[key], out, names[key]);
+      add(PartKind::kUnit, names[key], out);
     }
   }
 
@@ -83,11 +82,7 @@ class Parts {
       if (type.name.empty() || type.kind == Kind::kGlobals) continue;
       base::ByteWriter out;
       write_type(out, TypeId(i));
-      if (has_own_variables(type.kind)) {
-        add(PartKind::kBlock, type.name, out, unit_of(members_, type.name));
-      } else {
-        add(PartKind::kType, type.name, out);
-      }
+      add(has_own_variables(type.kind) ? PartKind::kBlock : PartKind::kType, type.name, out);
     }
   }
 

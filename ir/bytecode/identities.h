@@ -35,7 +35,6 @@ struct Part {
   PartKind kind = PartKind::kUnit;
   std::string name;
   base::Digest identity{};
-  std::string unit = {};  // of kUnit and kBlock: the unit that it goes with
 };
 
 using UnitMembers = std::vector<UnitMember>;  // as Image::unit_members

@@ -10,7 +10,6 @@ namespace {
 
 struct Row {
   std::string name;
-  std::string unit = {};
   base::Digest original{};
   base::Digest edited{};
 };
@@ -30,19 +29,17 @@ std::vector<PartEdit> part_edits(const std::vector<Part>& original, const std::v
   for (const Part& part : original) {
     Row& row = rows[{part.kind, fold_name(part.name)}];
     row.name = part.name;
-    row.unit = part.unit;
     row.original = part.identity;
   }
   for (const Part& part : edited) {
     Row& row = rows[{part.kind, fold_name(part.name)}];
     row.name = part.name;
-    row.unit = part.unit;
     row.edited = part.identity;
   }
   std::vector<PartEdit> edits;
   for (const auto& [key, row] : rows) {
     if (row.original == row.edited) continue;
-    PartEdit edit{key.first, row.name, PartState::kOk, row.original, row.edited, {}, row.unit};
+    PartEdit edit{key.first, row.name, PartState::kOk, row.original, row.edited, {}};
     const Part* const here = find_part(target, key.first, row.name);
     if (here != nullptr) edit.here = here->identity;
     edit.state = state_of(edit);
@@ -53,12 +50,16 @@ std::vector<PartEdit> part_edits(const std::vector<Part>& original, const std::v
 
 bool is_of_unit(PartKind kind) { return kind == PartKind::kUnit || kind == PartKind::kBlock; }
 
-std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_view step) {
+std::string_view step_of(const PartEdit& edit, const UnitMembers& members) {
+  if (!is_of_unit(edit.kind)) return kTableStep;
+  return edit.kind == PartKind::kUnit ? edit.name : unit_of(members, edit.name);
+}
+
+std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_view step,
+                              const UnitMembers& members) {
   std::vector<PartEdit> of;
   for (const PartEdit& edit : edits) {
-    const bool table = step == kTableStep;
-    const bool in = is_of_unit(edit.kind) ? !table && same_name(edit.unit, step) : table;
-    if (in) of.push_back(edit);
+    if (same_name(step_of(edit, members), step)) of.push_back(edit);
   }
   return of;
 }

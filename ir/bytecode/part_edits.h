@@ -25,7 +25,6 @@ struct PartEdit {
   base::Digest original{};  // 0: the edit adds it
   base::Digest edited{};    // 0: the edit removes it
   base::Digest here{};      // 0: the target has none
-  std::string unit = {};    // Part::unit
 };
 
 // The parts that differ between `original` and `edited`, in their order; all three are those of
@@ -41,6 +40,9 @@ inline std::string step_text(std::string_view step) {
   return std::string(step == kTableStep ? kTableName : step);
 }
 bool is_of_unit(PartKind kind);
-std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_view step);
+// The step that a part is made in; `members`: those of the edited version.
+std::string_view step_of(const PartEdit& edit, const UnitMembers& members);
+std::vector<PartEdit> of_step(const std::vector<PartEdit>& edits, std::string_view step,
+                              const UnitMembers& members);
 
 }  // namespace ir

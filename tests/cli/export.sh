@@ -53,11 +53,12 @@ S
 expect 0 stc export schema.st -o schema.xml
 grep -q '<derived name="LTIME" />' schema.xml || fail "an element that TC6 does not have"
 expect 0 stc export chart.xml -o chart-again.xml
+expect 0 stc export blocks.xml -o blocks-again.xml
 python3 - <<'P' || fail "not in the order of the schema"
 import xml.etree.ElementTree as tree
 def local(node):
     return node.tag.rsplit("}", 1)[-1]
-for name in ("schema.xml", "chart-again.xml"):
+for name in ("schema.xml", "chart-again.xml", "blocks-again.xml"):
     for node in tree.parse(name).iter():
         kinds = [local(child) for child in node]
         if "addData" in kinds:

@@ -20,11 +20,9 @@ struct FleetParts {
   std::optional<ir::VerifiedImage> edited_image;  // always there; its table
   bool free_table = false;                        // E-17
 
-  bool has_joined_units() const { return !edited_image->image().unit_members.empty(); }
+  const ir::UnitMembers& units() const { return edited_image->image().unit_members; }
   // Those of a controller's program, in the units of the edit (E-01).
-  std::vector<ir::Part> of(const ir::Image& image) const {
-    return ir::parts_of(image, edited_image->image().unit_members);
-  }
+  std::vector<ir::Part> of(const ir::Image& image) const { return ir::parts_of(image, units()); }
 };
 base::Result<FleetParts> parts_of(const online_change::FleetFile& file);
 // A fleet file with what it changes.

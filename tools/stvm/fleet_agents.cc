@@ -244,7 +244,7 @@ FleetRow FleetAgents::look_at(const FleetEdit* edit, const FleetTalk& talk,
   if (edit == nullptr) return row;
   // What it has published are units as it knows them: those of the edit need its image.
   base::Result<Program*> program{nullptr};
-  if (edit->parts.has_joined_units()) program = program_of(row.from, member);
+  if (!edit->parts.units().empty()) program = program_of(row.from, member);
   if (!program.ok()) return talk.failed(std::move(row), program.error());
   base::Status fits = *program ? check_parts(*edit, (*program)->image, row)
                                : check_parts(*edit, known->about->parts, base::Ok{}, row);

@@ -108,7 +108,7 @@ FleetRow FleetChange::taken_back(FleetSeen& seen, FleetRow row, const base::Erro
 }
 
 FleetRow FleetChange::change_in_steps(SwitchOptions how, FleetSeen& seen, FleetRow row) {
-  const std::vector<size_t> to_come = steps_to_come(edit_.steps, row.parts);
+  const std::vector<size_t> to_come = steps_to_come(edit_.steps, row.parts, edit_.parts.units());
   const uint32_t flags = how.switch_flags;
   std::optional<Outcome> last;
   for (size_t i = 0; i < to_come.size(); ++i) {

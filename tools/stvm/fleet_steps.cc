@@ -20,10 +20,11 @@ bool is_to_come(const std::vector<ir::PartEdit>& parts) {
 }  // namespace
 
 std::vector<size_t> steps_to_come(const std::vector<std::string>& steps,
-                                  const std::vector<ir::PartEdit>& parts) {
+                                  const std::vector<ir::PartEdit>& parts,
+                                  const ir::UnitMembers& members) {
   std::vector<size_t> left;
   for (size_t i = 0; i < steps.size(); ++i) {
-    if (is_to_come(ir::of_step(parts, steps[i]))) left.push_back(i);
+    if (is_to_come(ir::of_step(parts, steps[i], members))) left.push_back(i);
   }
   return left;
 }

@@ -15,7 +15,8 @@ namespace stvm {
 // Numbers of those of which the controller has nothing yet, in their order. `parts`: what the edit
 // changes, and what the controller has.
 std::vector<size_t> steps_to_come(const std::vector<std::string>& steps,
-                                  const std::vector<ir::PartEdit>& parts);
+                                  const std::vector<ir::PartEdit>& parts,
+                                  const ir::UnitMembers& members);
 // Was the edit refused because there is no room for all of it at once?
 bool lacks_room(const base::Error& why);
 // What runs from `cycle` on, when the first `arrived` of those to come have come.

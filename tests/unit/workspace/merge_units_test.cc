@@ -153,7 +153,7 @@ TEST(Units, E01_E25_AStepIsAUnit) {
   ASSERT_TRUE(steps.ok());
   EXPECT_EQ(*steps, (std::vector<std::string>{"Pumping", "Filling"}));
   const std::vector<PartEdit> parts = linker::merge_parts({original, edited, original});
-  EXPECT_EQ(ir::of_step(parts, "Pumping").size(), 1u);
+  EXPECT_EQ(ir::of_step(parts, "Pumping", members).size(), 1u);
 
   next.pump = "n := n + 1; k := k + 1;";
   std::string text = next.text();
@@ -164,7 +164,7 @@ TEST(Units, E01_E25_AStepIsAUnit) {
   ASSERT_TRUE(built.image.has_value());
   const ir::Image wider = std::move(*ir::decode(*built.image));
   const std::vector<PartEdit> with_variables =
-      ir::of_step(linker::merge_parts({original, wider, original}), "Pumping");
+      ir::of_step(linker::merge_parts({original, wider, original}), "Pumping", members);
   ASSERT_EQ(with_variables.size(), 2u) << "the unit, and the variables of Pump";
   EXPECT_EQ(with_variables[1].kind, PartKind::kBlock);
   EXPECT_EQ(with_variables[1].name, "Pump");
