@@ -21,7 +21,7 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/vm/runtime/file_storage.cc ${CMAKE_SOURCE_DIR}/vm/runtime/write_set.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/thread_filter.cc ${CMAKE_SOURCE_DIR}/vm/runtime/realtime.cc
      ${CMAKE_SOURCE_DIR}/vm/io/shared_object.cc ${CMAKE_SOURCE_DIR}/vm/io/device_io.cc
-     ${CMAKE_SOURCE_DIR}/vm/io/simulated_driver.cc
+     ${CMAKE_SOURCE_DIR}/vm/io/simulated_driver.cc ${CMAKE_SOURCE_DIR}/vm/io/shared_memory_driver.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/losses.cc ${CMAKE_SOURCE_DIR}/online_change/apply/chart*.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/migrator.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/leaving.cc
