@@ -54,9 +54,8 @@ bool report_open_branch(const base::SourceMap& sources, uint32_t file,
   if (open >= tokens.tokens.size()) return false;
   diagnostics.add(
       base::DiagnosticCode::kUnclosedBracket, tokens.tokens[open].span(),
-      "this bracket is open where its branch of conditional compilation ends, and not where "
-      "another one does",
-      "close it in the branch");
+      "the branches of conditional compilation differ in the brackets that they leave open",
+      "close each bracket in the branch that opens it");
   return true;
 }
 

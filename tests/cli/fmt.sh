@@ -75,5 +75,5 @@ printf '\357\273\277PROGRAM p\r\n  (* \344 *)\r\nEND_PROGRAM\r\n' | cmp - dos.st
 printf 'PROGRAM P VAR n : INT; END_VAR\n{IF defined(FAST)}\nLD (1\n{ELSE}\nLD 2\nADD 1\n{END_IF}\nST n\nEND_PROGRAM\n' >branch.st
 cp branch.st kept.st
 expect 1 stc fmt branch.st
-said '^branch.st:3:4: error.E1011.: this bracket is open where its branch'
+said '^branch.st:3:4: error.E1011.: the branches of conditional compilation differ'
 cmp branch.st kept.st || fail "it was laid out"
