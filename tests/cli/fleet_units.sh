@@ -76,6 +76,23 @@ expect 0 stvm status --units --dir one --format json
 json '{u["unit"]: u["part_of"] for u in d["units"]}["Logic"] == "Pumping"'
 expect 0 stvm accept --dir one
 
+# Names out of an image that somebody else made are shown, not sent to the terminal.
+expect 0 stc build -q new -o new.img
+python3 - <<'PY'
+import hashlib
+image = bytearray(open("new.img", "rb").read())
+for name in (b"Pumping", b"Logic"):
+    text = len(name).to_bytes(4, "little") + name
+    assert text in image
+    image = image.replace(text, text[:4] + b"\x1b" + name[1:])
+image[16:48] = hashlib.sha256(image[48:]).digest()
+open("evil.img", "wb").write(image)
+PY
+expect 0 stc dump --parts evil.img
+said '^unit .x1bumping '
+said '^variables of .x1bogic '
+if grep -q "$(printf '\033')" out; then fail "a control character came through"; fi
+
 # Mistakes in stc.toml have their place.
 refused() {
   printf '[units]\n%s\n' "$1" >new/stc.toml
@@ -86,6 +103,7 @@ refused 'A = ["Pumb"]' 'new/stc.toml:2:6: .*no POU and no action `Pumb`; did you
 refused 'A = ["Pump", "pump"]' 'new/stc.toml:2:14: .*`pump` is in unit `A` already'
 refused 'A = []' 'unit `A` must be a list of names of POUs'
 refused 'A = "Pump"' 'unit `A` must be a list of names of POUs'
+refused 'Table = ["Pump"]' 'new/stc.toml:2:1: .*a unit cannot be called `Table`'
 refused 'Logic = ["Pump"]' 'unit `Logic` has the name of a POU that is in no unit'
 cat >>new/main.st <<'ST'
 FUNCTION_BLOCK Valve METHOD Open : BOOL Open := TRUE; END_METHOD END_FUNCTION_BLOCK

@@ -1,5 +1,6 @@
 // Plain text tables for terminals: columns as wide as their content, the widest
-// ones cut (with "..") until a row fits 80 columns.
+// ones cut (with "..") until a row fits 80 columns. What a cell has of control characters is shown,
+// not sent: names come out of images that others made (base/visible_text.h).
 #pragma once
 
 #include <string>

@@ -9,6 +9,7 @@
 #include "base/joined.h"
 #include "base/name_case.h"
 #include "base/nearest_name.h"
+#include "ir/bytecode/part_edits.h"
 
 namespace stc {
 namespace {
@@ -76,6 +77,11 @@ base::Result<UnitSettings> parse_unit_settings(const tools::ProjectFile& file) {
     if (names == nullptr || names->empty()) {
       return wrong_at(file.path, value.place,
                       base::joined({"unit `", unit, "` must be a list of names of POUs"}));
+    }
+    if (ir::same_name(unit, ir::kTableName)) {
+      return wrong_at(file.path, of_key,
+                      base::joined({"a unit cannot be called `", unit,
+                                    "`: that is all of an edit that is no unit"}));
     }
     if (const auto [other, added] = units.emplace(ir::fold_name(unit), unit); !added) {
       return wrong_at(
