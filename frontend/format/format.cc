@@ -46,16 +46,19 @@ uint32_t open_diagram(const base::SourceMap& sources, uint32_t file, const Token
 }
 
 // What is no sound text in a branch that does not count, so that nobody else has said it.
-bool report_open_branch(const base::SourceMap& sources, uint32_t file,
+bool report_open_branch(const base::SourceMap& sources, uint32_t file, formatting::Opened what,
                         base::Diagnostics& diagnostics) {
   base::Diagnostics lexical;
   const TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
-  const uint32_t open = formatting::open_in_branch(formatting::Text(sources, file, tokens));
+  const uint32_t open = formatting::open_in_branch(formatting::Text(sources, file, tokens), what);
   if (open >= tokens.tokens.size()) return false;
+  const bool bracket = what == formatting::Opened::kBracket;
   diagnostics.add(
-      base::DiagnosticCode::kUnclosedBracket, tokens.tokens[open].span(),
-      "the branches of conditional compilation differ in the brackets that they leave open",
-      "close each bracket in the branch that opens it");
+      bracket ? base::DiagnosticCode::kUnclosedBracket : base::DiagnosticCode::kMissingEnd,
+      tokens.tokens[open].span(),
+      std::string("the branches of conditional compilation differ in the ") +
+          (bracket ? "brackets" : "POUs") + " that they leave open",
+      std::string("close each ") + (bracket ? "bracket" : "POU") + " in the branch that opens it");
   return true;
 }
 
@@ -107,7 +110,9 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   bool rows_count =
       std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) || tree.exprs.any_of(of_list);
   if (!formatted.ok() || !rows_count) return formatted;
-  if (report_open_branch(sources, file, diagnostics)) return errors_in(sources, file, 1);
+  if (report_open_branch(sources, file, formatting::Opened::kBracket, diagnostics)) {
+    return errors_in(sources, file, 1);
+  }
   // The ends of rows are part of an instruction list, and no token shows them.
   base::SourceMap result;
   result.add(std::string(sources.file_name(file)), *formatted);
@@ -116,6 +121,9 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   parse(result, 0, after, other);
   // Words of diagrams may change their case.
   if (ir::same_name(print(after), print(tree))) return formatted;
+  if (report_open_branch(sources, file, formatting::Opened::kPou, diagnostics)) {
+    return errors_in(sources, file, 1);
+  }
   return base::Error{
       base::Refusal::kInternal,
       std::string(sources.file_name(file)) +

@@ -47,7 +47,6 @@ bool Outliner::begins_member(uint32_t i) const {
     case TokenKind::kClass:
     case TokenKind::kAction:
     case TokenKind::kNamespace:
-    case TokenKind::kResource:
     case TokenKind::kStep:
     case TokenKind::kInitialStep:
     case TokenKind::kMockFunction:
@@ -62,7 +61,7 @@ bool Outliner::begins_member(uint32_t i) const {
 }
 
 // Words that are names elsewhere: they open something only before another name. Never so in a
-// statement, except `step S= x`.
+// statement, except `step S= x`; in an instruction list, what stands in no POU is a function.
 bool Outliner::soft_head() {
   TokenKind k = kind();
   if (!is_name(k)) return false;
@@ -71,9 +70,9 @@ bool Outliner::soft_head() {
   bool named = is_name(next) && kind(2) != TokenKind::kEqual;
   switch (k) {
     case TokenKind::kSetup:
-      return setup(TokenKind::kEndSetup);
+      return !top().instructions && setup(TokenKind::kEndSetup);
     case TokenKind::kTeardown:
-      return setup(TokenKind::kEndTeardown);
+      return !top().instructions && setup(TokenKind::kEndTeardown);
     case TokenKind::kMockFunction:
       return named && mock_function();
     case TokenKind::kMethod:
@@ -95,8 +94,9 @@ bool Outliner::soft_head() {
       if (named) named_group(TokenKind::kEndNamespace, BlockKind::kGroup);
       return named;
     case TokenKind::kResource:
-      if (named) named_group(TokenKind::kEndResource, BlockKind::kGroup);
-      return named;
+      if (!named || top().instructions) return false;
+      named_group(TokenKind::kEndResource, BlockKind::kGroup);
+      return true;
     case TokenKind::kStep:
     case TokenKind::kInitialStep:
       if (named) step(TokenKind::kEndStep);

@@ -5,7 +5,8 @@ namespace frontend::formatting {
 
 void Outliner::statement_level() {
   if (is_block_end(kind())) return close();
-  if (kind() == TokenKind::kExtends || kind() == TokenKind::kImplements) {
+  const bool inherits = kind() == TokenKind::kExtends || kind() == TokenKind::kImplements;
+  if (inherits && !top().instructions) {
     // The rest of a head that USING has interrupted.
     uint32_t behind = behind_bases(at_);
     if (top().kind == BlockKind::kBody && behind != at_) {

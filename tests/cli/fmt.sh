@@ -77,3 +77,8 @@ cp branch.st kept.st
 expect 1 stc fmt branch.st
 said '^branch.st:3:4: error.E1011.: the branches of conditional compilation differ'
 cmp branch.st kept.st || fail "it was laid out"
+printf 'PROGRAM P VAR n : INT; END_VAR\n{IF defined(FAST)}\nLD PROGRAM\n{ELSE}\nLD 2\nADD 1\n{END_IF}\nST n\nEND_PROGRAM\n' >branch.st
+cp branch.st kept.st
+expect 1 stc fmt branch.st
+said '^branch.st:3:4: error.E1003.: the branches of conditional compilation differ in the POUs'
+cmp branch.st kept.st || fail "it was laid out"

@@ -115,6 +115,21 @@ TEST(Format, ABlockThatEndsInFrontOfAnotherBranch) {
   EXPECT_FALSE(format(sources, 0, {}, diagnostics).ok());
 }
 
+// What opens something outside of POUs is a function in an instruction list.
+TEST(Format, WordsOfHeadsAreFunctionsInAnInstructionList) {
+  for (const char* word : {"SETUP", "TEARDOWN", "RESOURCE", "EXTENDS", "IMPLEMENTS", "RESOURCE n",
+                           "SETUP n", "TEARDOWN n", "EXTENDS n"}) {
+    base::SourceMap sources;
+    sources.add("a.st",
+                std::string("PROGRAM P\nVAR\n  n : INT;\nEND_VAR\n         LD  n\n         ") +
+                    word + "\nlabel1:\n         ST  n\nEND_PROGRAM\n");
+    base::Diagnostics diagnostics;
+    base::Result<std::string> text = format(sources, 0, {}, diagnostics);
+    ASSERT_TRUE(text.ok()) << word << ": " << text.error().text;
+    EXPECT_NE(text->find("\n  label1:\n    ST    n\n"), std::string::npos) << *text;
+  }
+}
+
 std::string read(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
