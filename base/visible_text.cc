@@ -61,6 +61,16 @@ std::string visible(std::string_view text) {
   return out;
 }
 
+bool has_control(std::string_view text) {
+  bool after_c2 = false;
+  for (const char c : text) {
+    const auto byte = static_cast<uint8_t>(c);
+    if (byte < 0x20 || byte == 0x7f || (after_c2 && byte >= 0x80 && byte < 0xa0)) return true;
+    after_c2 = byte == 0xc2;
+  }
+  return false;
+}
+
 std::string visible_lines(std::string_view text) {
   std::string out;
   for (size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {

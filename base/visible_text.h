@@ -14,6 +14,9 @@ std::string visible(std::string_view text);
 // The same for text of several lines, which stay lines.
 std::string visible_lines(std::string_view text);
 
+// Is one of its characters a control character (C0, DEL, or C1 as UTF-8 writes it)?
+bool has_control(std::string_view text);
+
 // The begin of `text`, of at most `limit` bytes, that ends after a whole character of UTF-8. A part
 // of `text`; allocates nothing.
 std::string_view whole_characters(std::string_view text, size_t limit);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/visible_text.h"
+
 namespace linker {
 namespace {
 
@@ -213,7 +215,7 @@ LinkedCode linked_code(Pass& pass, const ir::Object& object, FrameLayout frame) 
   pou.kind = object.kind;
   pou.self = object.self;
   pou.recursion_depth = object.recursion_depth;
-  pou.file = object.file;
+  pou.file = base::visible(object.file);  // as an image can hold it
   pou.frame_size = frame.size;
   pou.slots = std::move(frame.slots);
   for (const ir::Merge& merge : object.merges) {

@@ -28,6 +28,7 @@ class Renumberer {
   }
   template <class T>
   void operator()(T&) const {}
+  void text_bytes(const std::string&) const {}
   template <class E>
   void enumerator(E&, uint32_t) const {}
   template <class L, class U>

@@ -15,38 +15,32 @@ bool ends_branch(const Text& text, uint32_t i) {
   return ends;
 }
 
+uint32_t first_branch_end(const Text& text) {
+  uint32_t i = 0;
+  while (i < text.token_count() && !ends_branch(text, i)) ++i;
+  return i;
+}
+
 namespace {
 
-bool begins_pou(TokenKind kind) {
-  return kind == TokenKind::kProgram || kind == TokenKind::kFunction ||
-         kind == TokenKind::kFunctionBlock;
-}
-
-bool ends_pou(TokenKind kind) {
-  return kind == TokenKind::kEndProgram || kind == TokenKind::kEndFunction ||
-         kind == TokenKind::kEndFunctionBlock;
-}
-
-// Brackets, or POUs, of one {IF ...}: how many are open.
+// Brackets of one {IF ...}: how many are open.
 struct Branches {
   size_t before = 0;
   std::optional<size_t> behind;  // the first of its branches
-  uint32_t last = 0;             // token of that
+  uint32_t last = 0;             // bracket of that
   bool has_else = false;
 };
 
-class OpenWalk {
+class BracketWalk {
  public:
-  OpenWalk(const Text& text, Opened what) : text_(text), pous_(what == Opened::kPou) {}
+  explicit BracketWalk(const Text& text) : text_(text) {}
 
   uint32_t run() {
     for (uint32_t i = 0; i < text_.token_count(); ++i) {
       for_each_pragma(text_, i, [&](std::string_view word) { pragma(word, i); });
       if (found_) return *found_;
-      const TokenKind kind = text_.kind(i);
-      if (pous_ ? begins_pou(kind) : is_opening(kind)) open_.push_back(i);
-      const bool closes = pous_ ? ends_pou(kind) : is_closing_bracket(kind);
-      if (closes && !open_.empty()) open_.pop_back();
+      if (is_opening(text_.kind(i))) open_.push_back(i);
+      if (is_closing_bracket(text_.kind(i)) && !open_.empty()) open_.pop_back();
     }
     return text_.token_count();
   }
@@ -71,7 +65,6 @@ class OpenWalk {
   }
 
   const Text& text_;
-  bool pous_;
   std::vector<uint32_t> open_;
   std::vector<Branches> branches_;
   std::optional<uint32_t> found_;
@@ -79,6 +72,6 @@ class OpenWalk {
 
 }  // namespace
 
-uint32_t open_in_branch(const Text& text, Opened what) { return OpenWalk(text, what).run(); }
+uint32_t open_in_branch(const Text& text) { return BracketWalk(text).run(); }
 
 }  // namespace frontend::formatting

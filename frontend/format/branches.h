@@ -31,10 +31,11 @@ inline bool begins_other_branch(std::string_view word) {
 // Does a branch end in front of token `i`?
 bool ends_branch(const Text& text, uint32_t i);
 
-enum class Opened : uint8_t { kBracket, kPou };
+// The first token behind the end of a branch; the number of tokens: there is none.
+uint32_t first_branch_end(const Text& text);
 
-// The token of a bracket, or the first of a POU, that is open where its branch ends, and not where
-// another branch of the same {IF ...} does; the number of tokens: there is none. O(tokens).
-uint32_t open_in_branch(const Text& text, Opened what);
+// The token of a bracket that is open where its branch ends, and not where another branch of the
+// same {IF ...} does; the number of tokens: there is none. O(tokens).
+uint32_t open_in_branch(const Text& text);
 
 }  // namespace frontend::formatting

@@ -46,19 +46,31 @@ uint32_t open_diagram(const base::SourceMap& sources, uint32_t file, const Token
 }
 
 // What is no sound text in a branch that does not count, so that nobody else has said it.
-bool report_open_branch(const base::SourceMap& sources, uint32_t file, formatting::Opened what,
+bool report_open_branch(const base::SourceMap& sources, uint32_t file,
                         base::Diagnostics& diagnostics) {
   base::Diagnostics lexical;
   const TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
-  const uint32_t open = formatting::open_in_branch(formatting::Text(sources, file, tokens), what);
+  const uint32_t open = formatting::open_in_branch(formatting::Text(sources, file, tokens));
   if (open >= tokens.tokens.size()) return false;
-  const bool bracket = what == formatting::Opened::kBracket;
   diagnostics.add(
-      bracket ? base::DiagnosticCode::kUnclosedBracket : base::DiagnosticCode::kMissingEnd,
-      tokens.tokens[open].span(),
-      std::string("the branches of conditional compilation differ in the ") +
-          (bracket ? "brackets" : "POUs") + " that they leave open",
-      std::string("close each ") + (bracket ? "bracket" : "POU") + " in the branch that opens it");
+      base::DiagnosticCode::kUnclosedBracket, tokens.tokens[open].span(),
+      "the branches of conditional compilation differ in the brackets that they leave open",
+      "close each bracket in the branch that opens it");
+  return true;
+}
+
+// Of a text that cannot be laid out and has such branches: what stands in them is to blame.
+bool report_branches(const base::SourceMap& sources, uint32_t file,
+                     base::Diagnostics& diagnostics) {
+  base::Diagnostics lexical;
+  const TokenList tokens = lex(sources, file, lexical, LexOptions::all_text());
+  const formatting::Text text(sources, file, tokens);
+  const uint32_t end = formatting::first_branch_end(text);
+  if (end >= text.token_count()) return false;
+  diagnostics.add(base::DiagnosticCode::kMissingEnd, tokens.tokens[end].span(),
+                  "the branches of conditional compilation in front of this cannot be laid out "
+                  "together: one begins or ends what the others do not",
+                  "write whole rows, blocks of variables and POUs in each branch");
   return true;
 }
 
@@ -110,9 +122,7 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   bool rows_count =
       std::any_of(tree.stmts.begin(), tree.stmts.end(), of_list) || tree.exprs.any_of(of_list);
   if (!formatted.ok() || !rows_count) return formatted;
-  if (report_open_branch(sources, file, formatting::Opened::kBracket, diagnostics)) {
-    return errors_in(sources, file, 1);
-  }
+  if (report_open_branch(sources, file, diagnostics)) return errors_in(sources, file, 1);
   // The ends of rows are part of an instruction list, and no token shows them.
   base::SourceMap result;
   result.add(std::string(sources.file_name(file)), *formatted);
@@ -121,9 +131,7 @@ base::Result<std::string> format(const base::SourceMap& sources, uint32_t file,
   parse(result, 0, after, other);
   // Words of diagrams may change their case.
   if (ir::same_name(print(after), print(tree))) return formatted;
-  if (report_open_branch(sources, file, formatting::Opened::kPou, diagnostics)) {
-    return errors_in(sources, file, 1);
-  }
+  if (report_branches(sources, file, diagnostics)) return errors_in(sources, file, 1);
   return base::Error{
       base::Refusal::kInternal,
       std::string(sources.file_name(file)) +

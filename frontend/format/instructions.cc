@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frontend/format/outliner.h"
+#include "frontend/format/spacing.h"
 #include "frontend/parse/il_operators.h"
 
 namespace frontend::formatting {
@@ -51,11 +52,7 @@ void Outliner::instruction() {
   line.label_levels = labelled ? top().label_levels : 0;
   for (uint32_t i = behind; i < end; ++i) line.one_row = line.one_row || is_deferred(i);
   uint32_t operand = behind + 1;
-  if (text_.kind(behind) == TokenKind::kAmpersand && operand + 1 < end &&
-      text_.is_word(operand, "N") && text_.end(behind) == text_.begin(operand) &&
-      text_.kind(operand + 1) != TokenKind::kRightParen) {
-    ++operand;
-  }
+  if (is_and_not(text_, behind, end)) ++operand;
   if (is_deferred(behind)) ++operand;
   bool call = !is_deferred(behind) && is_opening(text_.kind(operand));
   bool name = text_.kind(operand) == TokenKind::kDot || text_.kind(operand) == TokenKind::kEqual;

@@ -2,6 +2,7 @@
 
 #include "base/limits.h"
 #include "frontend/format/outliner.h"
+#include "frontend/format/spacing.h"
 #include "frontend/lex/characters.h"
 
 namespace frontend::formatting {
@@ -139,6 +140,9 @@ void Layout::instruction(const Line& line) {
   }
   range_flat(first, line.operand != 0 ? operand : first);
   if (line.operand != 0) pad_to(operand, base + kOperatorColumns);
+  for (uint32_t i = operand; i < line.end; ++i) {  // of instructions in parentheses
+    if (is_and_not(text_, i, line.end)) blank_[i + 1 - first_] = false;
+  }
   bool sign = text_.kind(operand) == TokenKind::kMinus || text_.kind(operand) == TokenKind::kPlus;
   if (sign && operand + 1 < line.end) blank_[operand + 1 - first_] = false;
   uint32_t rest = line.operand != 0 ? operand : first;

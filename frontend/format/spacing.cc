@@ -120,6 +120,11 @@ bool blank_before(const Text& text, const Line& line, uint32_t i) {
   return i >= first + 2 && text.kind(i - 2) == TokenKind::kTypePrefix && !adjacent(text, i);
 }
 
+bool is_and_not(const Text& text, uint32_t i, uint32_t end) {
+  return text.kind(i) == TokenKind::kAmpersand && i + 2 < end && text.is_word(i + 1, "N") &&
+         text.end(i) == text.begin(i + 1) && text.kind(i + 2) != TokenKind::kRightParen;
+}
+
 Binding binding(const Text& text, uint32_t i, uint32_t first) {
   switch (text.kind(i)) {
     case TokenKind::kAssign:

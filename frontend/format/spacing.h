@@ -41,4 +41,7 @@ enum class GroupKind : uint8_t {
 // The kind of the bracket at `open`, whose partner is at `close`.
 GroupKind group_kind(const Text& text, uint32_t open, uint32_t close, uint32_t first);
 
+// Is it the operator `&N` of an instruction list, and more follows in front of `end`?
+bool is_and_not(const Text& text, uint32_t i, uint32_t end);
+
 }  // namespace frontend::formatting

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/visible_text.h"
 #include "ir/bytecode/image.h"
 
 namespace ir {
@@ -72,6 +73,7 @@ class ImageWriter : public base::WriteArchiveOn<GatheringWriter> {
  public:
   using WriteArchiveOn::list;
   explicit ImageWriter(size_t expected) : WriteArchiveOn(expected) {}
+  void text_bytes(const std::string& v) { (*this)(v); }  // of a STRING: any bytes
   // Two in one byte, the second in its upper half: where that is the first enumerator, the byte is
   // what it was before the format had it.
   template <class L, class U>
@@ -143,6 +145,14 @@ class ImageReader : public base::ReadArchiveOn<base::ByteReader&> {
   // `content`: all that `in` reads.
   ImageReader(base::ByteReader& in, base::ByteSpan content)
       : ReadArchiveOn(in), content_(content) {}
+  using ReadArchiveOn::operator();
+  // A name, or a text for people. With control characters it is damage: what shows it to somebody
+  // need not ask who made the image.
+  void operator()(std::string& v) {
+    ReadArchiveOn::operator()(v);
+    if (base::has_control(v)) in_.fail();
+  }
+  void text_bytes(std::string& v) { ReadArchiveOn::operator()(v); }
   template <class L, class U>
   void enumerators(L& lower, uint32_t lower_limit, U& upper, uint32_t upper_limit) {
     const uint8_t both = in_.u8();

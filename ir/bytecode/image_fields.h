@@ -51,7 +51,7 @@ void type_fields(Archive& a, T& v) {
 template <class Archive, class T>
 void constant_fields(Archive& a, T& v) {
   a(v.bits);
-  a(v.text);
+  a.text_bytes(v.text);
   a.list(v.elements, 12, [&](auto& element) {
     a(element.first);
     a(element.count);

@@ -80,5 +80,5 @@ cmp branch.st kept.st || fail "it was laid out"
 printf 'PROGRAM P VAR n : INT; END_VAR\n{IF defined(FAST)}\nLD PROGRAM\n{ELSE}\nLD 2\nADD 1\n{END_IF}\nST n\nEND_PROGRAM\n' >branch.st
 cp branch.st kept.st
 expect 1 stc fmt branch.st
-said '^branch.st:3:4: error.E1003.: the branches of conditional compilation differ in the POUs'
+said '^branch.st:5:1: error.E1003.: the branches of conditional compilation in front of this cannot be laid'
 cmp branch.st kept.st || fail "it was laid out"

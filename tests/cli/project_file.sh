@@ -121,6 +121,12 @@ T
 refused 1:8 'text without closing quote' <<'T'
 name = "a
 T
+refused 1:11 'unknown escape; known are' <<'T'
+name = "a\nb"
+T
+printf 'name = "a\033[2Jb"\n' | refused 1:8 'a text with control characters'
+echo 'name = "a"' | toml
+expect 2 stc check plant --name "$(printf 'a\033[2J')"
 printf '[devices.press]\ndriver = "modbus"\n' >plant/stc.toml
 expect 7 stc check plant
 said '^plant/stc.toml:2:10: error\[R0507\]: unknown driver "modbus"'

@@ -83,7 +83,7 @@ void alter_number(T& v, const FieldChange& change, uint64_t limit, const Other& 
 }
 
 void alter_text(std::string& v, const FieldChange& change, const Other& other) {
-  constexpr char kOdd[] = {'\0', '.', '[', '\'', '\xff', ' ', '^', 'z'};
+  constexpr char kOdd[] = {'\x1b', '.', '[', '\'', '\xff', ' ', '^', '\0'};
   switch (change.how % 8) {
     case 0:
       return v.clear();

@@ -91,6 +91,7 @@ class ImageWalk {
     return false;
   }
   size_t at() const { return 0; }
+  void text_bytes(std::string& v) { (*this)(v); }
 
   // The table that interns types, and that of initial values, do not give their rows away.
   void types(ir::TypeTable& types) {

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "base/joined.h"
+#include "base/visible_text.h"
 
 namespace tools {
 namespace {
@@ -146,18 +147,17 @@ class Parser {
         case '\\':
           out += '\\';
           break;
-        case 'n':
-          out += '\n';
-          break;
-        case 't':
-          out += '\t';
-          break;
         default:
-          fail("unknown escape; known are \\\" \\\\ \\n \\t");
+          fail("unknown escape; known are \\\" and \\\\");
           return out;
       }
     }
     ++at_;
+    // Texts become names that others are shown.
+    if (base::has_control(out)) {
+      at_ = begin;
+      fail("a text with control characters");
+    }
     return out;
   }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "base/visible_text.h"
 #include "tools/common/files.h"
 #include "tools/common/project_file.h"
 #include "tools/stc/device_tables.h"
@@ -90,7 +91,7 @@ std::string project_name(const std::string& path) {
   std::error_code error;
   fs::path whole = fs::absolute(path, error).lexically_normal();
   if (whole.filename().empty()) whole = whole.parent_path();
-  const std::string name = whole.stem().string();
+  const std::string name = base::visible(whole.stem().string());
   return name.empty() ? "project" : name;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/parallel.h"
+#include "base/visible_text.h"
 #include "frontend/warning_pragmas.h"
 #include "tools/common/terminal.h"
 #include "tools/stc/edit_version.h"
@@ -80,6 +81,9 @@ base::Result<Project> open_project(const tools::Options& options,
   }
   if (options.has("--name")) {
     project->name = options.text("--name");
+    if (base::has_control(project->name)) {
+      return base::Error{base::Refusal::kUsage, "--name: a name has no control characters"};
+    }
     project->compile.name = project->name;
   }
   if (auto warnings = apply_warning_options(options, project->warnings); !warnings.ok()) {

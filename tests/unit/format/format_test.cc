@@ -130,6 +130,16 @@ TEST(Format, WordsOfHeadsAreFunctionsInAnInstructionList) {
   }
 }
 
+// `&N` is one operator where more follows, also within the parentheses of another instruction.
+TEST(Format, AndNotStaysOneOperatorInParentheses) {
+  base::SourceMap sources;
+  sources.add("a.st", "PROGRAM P\nld a\nandn(\nldn b &N c\n)\nst a\nEND_PROGRAM\n");
+  base::Diagnostics diagnostics;
+  base::Result<std::string> text = format(sources, 0, {}, diagnostics);
+  ASSERT_TRUE(text.ok()) << text.error().text;
+  EXPECT_NE(text->find("b &N c"), std::string::npos) << *text;
+}
+
 std::string read(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
