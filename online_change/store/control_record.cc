@@ -43,6 +43,7 @@ std::optional<ControlRecord> decode_control(base::ByteSpan payload) {
   if (in.left() != 0) record.resumes = in.boolean();
   const bool sound = record.slot < kImageSlots && record.trial_slot < kImageSlots;
   if (!in.done() || !sound || record.slot == record.trial_slot) return std::nullopt;
+  if (!record.trial && record.tries_left != 0) return std::nullopt;
   const base::Bytes written = encode(record);
   const bool same = std::equal(written.begin(), written.end(), payload.begin(), payload.end());
   return same ? std::optional(record) : std::nullopt;

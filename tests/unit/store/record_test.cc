@@ -391,6 +391,11 @@ TEST(Decoders, TakeWhatTheyWroteAndNothingElse) {
   EXPECT_TRUE(decode_control(encode(control))->resumes);
   bytes[32] = 2;  // it cannot hold both
   EXPECT_FALSE(decode_control(bytes));
+  ControlRecord idle = control;
+  idle.trial = idle.resumes = false;  // nothing is on trial, so nothing is tried
+  EXPECT_FALSE(decode_control(encode(idle)));
+  idle.tries_left = 0;
+  EXPECT_TRUE(decode_control(encode(idle)));
 
   RetainRecord retain;
   retain.image[0] = 1;
