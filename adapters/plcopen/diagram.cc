@@ -1,9 +1,11 @@
 // Diagrams as text: whole bodies, and what arrives somewhere as an expression.
+#include <utility>
+
 #include "adapters/plcopen/drawing.h"
+#include "adapters/xml/diagram_text.h"
 #include "base/name_case.h"
 #include "frontend/fbd/read.h"
 #include "frontend/network/same.h"
-#include "frontend/network/write.h"
 
 namespace plcopen {
 namespace {
@@ -146,23 +148,6 @@ std::string names_around(Node body) {
   return out;
 }
 
-// One network makes the whole body FBD.
-void report_as_fbd(const network::Body& made, Node body, Reporter& report) {
-  bool found = false;
-  for (uint32_t i = 0; i < made.networks.size(); ++i) {
-    const std::string why = network::ladder_problem(made.networks[i]);
-    if (why.empty()) continue;
-    found = true;
-    report.set_network(i + 1);
-    report.add(Code::kLadderAsFbd, body, "the ladder became FBD: " + why);
-  }
-  report.set_network(0);
-  if (!found) {
-    report.add(Code::kLadderAsFbd, body,
-               "the ladder became FBD: its labels and comments would say something else as text");
-  }
-}
-
 }  // namespace
 
 std::string diagram_text(Node body, const std::string& name, Reporter& report) {
@@ -177,16 +162,12 @@ std::string diagram_text(Node body, const std::string& name, Reporter& report) {
   xml::KeptDrawing& kept =
       report.out().kept.drawings[base::fold_name(whole ? own : report.pou() + "." + own)];
   kept = {made, {}, report.origin(body) == body ? plain_xml(body) : std::string()};
-  if (auto text = network::write_ladder(made, 2)) {
-    return "LADDER\n" + *text + "END_LADDER\n";
-  }
-  const std::string rows = network::write_fbd(made, 2, names_around(body));
-  if (ladder) {
+  xml::DiagramText out = xml::diagram_text(made, body, names_around(body), report);
+  if (!out.rows.empty()) {
     base::Diagnostics unheard;
-    kept.text = network::canonical(frontend::fbd::read(rows, base::SourcePos{0}, unheard));
-    report_as_fbd(made, body, report);
+    kept.text = network::canonical(frontend::fbd::read(out.rows, base::SourcePos{0}, unheard));
   }
-  return "FBD\n" + rows + "END_FBD\n";
+  return std::move(out.text);
 }
 
 std::string links_text(const network::Network& all, const std::vector<Link>& links, Node at,

@@ -1,5 +1,7 @@
 // One object -> one source.
+#include "adapters/twincat/networks.h"
 #include "adapters/twincat/twincat.h"
+#include "adapters/xml/diagram_text.h"
 #include "base/name_case.h"
 
 namespace twincat {
@@ -22,7 +24,6 @@ std::string error_pragma(std::string text) {
 // As people call it, with the word of the file.
 std::string language_of(Node form) {
   const std::string word(xml::local_name(form));
-  if (word == "NWL") return "ladder, FBD or IL (NWL)";
   if (word == "SFC") return "a chart (SFC)";
   return word;
 }
@@ -43,6 +44,7 @@ class ObjectWriter {
  private:
   std::string declaration(Node node);
   std::string body(Node owner, const std::string& what);
+  std::string networks(Node form, const std::string& what);
   void members(Node parent, std::string& out);
   std::string member(Node node, const char* end);
   std::string property(Node node);
@@ -91,6 +93,18 @@ std::string ObjectWriter::end_word(Node node, std::string_view text) {
   return {};
 }
 
+std::string ObjectWriter::networks(Node form, const std::string& what) {
+  const auto body = read_networks(form, what, report_);
+  if (!body) return error_pragma("the body of " + what + " was not imported");
+  if (body->networks.empty()) return {};
+  // The variables around it: all words of the object's declarations.
+  std::string names;
+  for (Node owner = form.parent(); owner && owner != object_.parent(); owner = owner.parent()) {
+    names += ' ' + xml::text_of(xml::child(owner, "Declaration"));
+  }
+  return xml::diagram_text(*body, form, names, report_).text;
+}
+
 std::string ObjectWriter::body(Node owner, const std::string& what) {
   Node implementation = xml::child(owner, "Implementation");
   if (!implementation) return {};
@@ -99,6 +113,10 @@ std::string ObjectWriter::body(Node owner, const std::string& what) {
     if (xml::is(form, "ST")) {
       out += xml::text_of(form);
       if (!out.empty()) out += "\n";
+      continue;
+    }
+    if (xml::is(form, "NWL")) {
+      out += networks(form, what);
       continue;
     }
     const std::string text = "the body of " + what + " is in " + language_of(form) +

@@ -202,11 +202,10 @@ VAR END_VAR]]></Declaration>
     <Implementation><NWL><XmlArchive><Data><o t="NWLImplementationObject" /></Data></XmlArchive></NWL></Implementation>
 X
 expect 1 stc check ladder.TcPOU
-said "ladder\.TcPOU:6:[0-9]+: error\[E1080\]: POU Ladder: the body of Ladder is in ladder, FBD or IL \(NWL\)"
-said 'export the POU as PLCopen XML in TwinCAT \(Export PLCopenXML\), and import that file'
+said "ladder\.TcPOU:6:[0-9]+: error\[E1083\]: POU Ladder: the body of Ladder holds no list of networks"
 expect 1 stc import ladder.TcPOU -o nwl
 expect 1 stc check nwl
-said 'nwl/Ladder\.st:[0-9]+:[0-9]+: error\[E[0-9]+\]: the body of Ladder is in ladder, FBD or IL .NWL.'
+said 'nwl/Ladder\.st:[0-9]+:[0-9]+: error\[E[0-9]+\]: the body of Ladder was not imported'
 for word in SFC CFC IL Other; do
   sed "s/NWL>/$word>/g" ladder.TcPOU >other.TcPOU
   expect 1 stc check other.TcPOU
@@ -215,6 +214,86 @@ done
 sed 's/NWL>/CFC>/g' ladder.TcPOU >other.TcPOU
 expect 1 stc check other.TcPOU
 said 'write it in ST, ladder or FBD in TwinCAT'
+sed 's/NWL>/SFC>/g' ladder.TcPOU >other.TcPOU
+expect 1 stc check other.TcPOU
+said 'export the POU as PLCopen XML in TwinCAT \(Export PLCopenXML\), and import that file'
+
+# Ladder and FBD come in (cli/vendor_sources has what they do); what does not is named, with its network.
+drawn() {  # drawn VIEW: the items of the second network from standard input
+  object drawn.TcPOU POU Drawn <<X
+    <Declaration><![CDATA[PROGRAM Drawn
+VAR a, b, c : BOOL; n : INT; t : TON; END_VAR]]></Declaration>
+    <Implementation><NWL><XmlArchive><Data><o xml:space="preserve" t="NWLImplementationObject">
+      <v n="NetworkListComment">"All"</v><v n="DefaultViewMode">"$1"</v>
+      <l2 n="NetworkList" cet="Network">
+        <o><v n="Comment">""</v><l2 n="NetworkItems" /></o>
+        <o><v n="Title">"Second"</v>$(cat)</o>
+      </l2></o></Data></XmlArchive></NWL></Implementation>
+X
+}
+op() { printf '<o n="Operand" t="Operand"><v n="Operand">"%s"</v><v n="Type">"%s"</v><o n="Flags" t="Flags"><v n="Flags">%s</v></o></o>' "$1" "${3:-BOOL}" "${2:-0}"; }
+to() { printf '<o n="OutputItems" t="OutputItemList"><l2 n="OutputItems" cet="Operand"><o><v n="Operand">"%s"</v><v n="Type">"BOOL"</v></o></l2></o>' "$1"; }
+refused() {  # refused TEXT: the network from standard input
+  drawn "${2:-Fbd}"
+  expect 1 stc check drawn.TcPOU
+  said "drawn\.TcPOU:[0-9]+:[0-9]+: error\[E1083\]: POU Drawn, network 2: the body of Drawn: $1"
+}
+items() { printf '<l2 n="NetworkItems"%s>' "$1"; cat; printf '</l2>'; }
+box() {  # box TYPE MORE: its pins from standard input
+  printf '<o t="BoxTreeBox"><v n="BoxType">"%s"</v>%s<l2 n="InputItems" cet="BoxTreeOperand">' "$1" "$2"; cat
+  printf '</l2></o>'
+}
+printf '<o>%s<o n="RValue" t="BoxTreeOperand">%s</o></o>' "$(to a)" "$(op b)" | items ' cet="BoxTreeAssign"' | drawn Ld
+expect 0 stc import drawn.TcPOU -o drawn_text
+grep -qx '  |--\[ b \]--( a )--|' drawn_text/Drawn.st || fail "the rung"
+grep -q '(\* All \*)' drawn_text/Drawn.st || fail "the comment"
+items '' <<X | refused 'an element of type .\?. is not known here'
+<o>$(op b)</o>
+X
+items '' <<X | refused 'an element of type .BoxTreeNew. is not known here'
+<o t="BoxTreeNew">$(op b)</o>
+X
+items '' <<X | refused 'a branch leads from wire 7, which begins nowhere in front of it'
+<o t="BoxTreeDemux"><v n="VarId">7</v><n n="Input" /></o>
+X
+printf '<o>%s</o>' "$(op b)" | box EXECUTE '<v n="ProvidesSTSnippet">true</v>' | items '' |
+  refused 'a box with statements of its own \(EXECUTE\) does not come in'
+printf '<o>%s</o>' "$(op b)" | box TON '<v n="CallType" t="Operator">FunctionBlock</v>' | items '' |
+  refused 'the box .TON. calls an instance that has no name'
+printf '<o>%s</o>' "$(op b)" | box TON '<o n="Instance" t="Operand"><v n="Operand">"???"</v></o>' | items '' |
+  refused 'the box .TON. calls an instance that has no name'
+printf '<o>%s</o><n />' "$(op b)" | box AND '' | items '' | refused 'a pin of the box .AND. is not connected'
+printf '<o>%s</o>' "$(op b 16)" | box NOT '<l2 n="InputFlags" cet="Flags"><o><v n="Flags">1</v></o></l2>' | items '' |
+  refused 'a pin has two marks, an edge and another one'
+printf '<o>%s</o>' "$(op b)" | box NOT '<l2 n="InputFlags" cet="Flags"><o><v n="Flags">2</v></o></l2>' | items '' |
+  refused 'a pin of the box .NOT. has the marks 2, which are not known here'
+items '' <<X | refused 'a coil or output has no variable' Ld
+<o t="BoxTreeAssign">$(to '???')<o n="RValue" t="BoxTreeOperand">$(op b)</o></o>
+X
+items '' <<X | refused 'a contact has no variable' Ld
+<o t="BoxTreeAssign">$(to a)<o n="RValue" t="BoxTreeOperand">$(op '???')</o></o>
+X
+items '' <<X | refused 'an assignment has the marks 2, which its variables have not'
+<o t="BoxTreeAssign">$(to a)<o n="Flags" t="Flags"><v n="Flags">2</v></o><o n="RValue" t="BoxTreeOperand">$(op b)</o></o>
+X
+refused 'an instruction list does not come in' <<'X'
+<v n="ILActive">true</v><l2 n="ILLines"><o/></l2><l2 n="NetworkItems" />
+X
+# Nothing at a coil is said, and the rest comes in.
+items '' <<X | drawn Fbd
+<o t="BoxTreeAssign">$(to a)<n n="RValue" /></o><o t="BoxTreeAssign">$(to c)<o n="RValue" t="BoxTreeOperand">$(op b)</o></o>
+X
+expect 0 stc import drawn.TcPOU -o drawn_part
+said 'note\[W0071\]: POU Drawn, network 2: nothing is connected to a coil or output'
+grep -qx '  c := b;' drawn_part/Drawn.st || fail "the other assignment"
+# A ladder that is no series and branches as text is FBD, with the reason.
+pins=$(printf '<o>%s</o><o>%s</o>' "$(op a)" "$(op b)" | box AND '')
+printf '%s%s' "$pins" "$pins" | box XOR '' | items '' | drawn Ld
+expect 0 stc import drawn.TcPOU -o drawn_fbd
+said 'note\[W0075\]: POU Drawn, network [12]: the ladder became FBD: power arrives at several pins of .XOR.'
+# Names of wires are none of the variables.
+sed 's/a, b, c : BOOL/a, b, c, and1, and2 : BOOL/' drawn.TcPOU >names.TcPOU
+expect 0 stc check names.TcPOU
 
 # Files that are missing, of another kind, or no XML.
 sed 's/ST_Data/ST_Gone/' plc/Plant.plcproj >plc/Gone.plcproj

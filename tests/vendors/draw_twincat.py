@@ -1,0 +1,612 @@
+#!/usr/bin/env python3
+"""Objects of TwinCAT with drawn bodies, as its editor stores them: draw_twincat.py FOLDER writes the
+folders drawn_* of tests/vendors/twincat. A tree is a tuple: its first word says what it is."""
+import os
+import sys
+import uuid
+from xml.sax.saxutils import escape
+
+NEGATED, SET, RESET, JUMP, RETURN, RISING, FALLING = 1, 2, 3, 4, 8, 16, 32
+
+
+def var(name, type_="BOOL", flags=0):
+    return ("operand", name, type_, flags)
+
+
+def val(text, type_="INT"):
+    return ("operand", text, type_, 0)
+
+
+def box(type_, *inputs, instance=None, names=(), outputs=(), out_names=(), out_types=(), en=False,
+        call="Operator", flags=0, marks=None):
+    """An output is None where the wire leads on, "" where nothing is connected, or a variable."""
+    return ("box", type_, inputs, instance, names, outputs, out_names, out_types, en, call, flags,
+            marks)
+
+
+def fb(type_, instance, inputs, outputs, out_types=None, **more):
+    """`inputs` and `outputs`: by the names of the pins."""
+    return box(type_, *inputs.values(), instance=instance, names=tuple(inputs),
+               outputs=tuple(outputs.values()), out_names=tuple(outputs),
+               out_types=tuple(out_types or ["BOOL"] * len(outputs)), call="FunctionBlock", **more)
+
+
+def to(targets, tree, flags=0):
+    targets = targets if isinstance(targets, list) else [targets]
+    return ("assign", [t if isinstance(t, tuple) else var(t) for t in targets], tree, flags)
+
+
+def wire(number, tree=None):
+    return ("demux", number, tree)
+
+
+def parallel(feed, *trees):
+    return ("parallel", feed, trees)
+
+
+RAIL = ("terminator", None)
+
+
+class Writer:
+    def __init__(self):
+        self.ids = 0
+        self.lines = []
+
+    def line(self, depth, text):
+        self.lines.append("  " * depth + text)
+
+    def value(self, depth, name, text, quoted=True):
+        self.line(depth, f'<v n="{name}">' + (f'"{escape(text)}"' if quoted else escape(str(text))) +
+                  "</v>")
+
+    def identity(self, depth):
+        self.value(depth, "Id", f"{self.ids}L", False)
+        self.ids += 1
+
+    def flags(self, depth, bits, name=' n="Flags"'):
+        self.line(depth, f'<o{name} t="Flags">')
+        self.value(depth + 1, "Flags", bits, False)
+        self.value(depth + 1, "Fixed", "false", False)
+        self.value(depth + 1, "Extensible", "false", False)
+        self.line(depth, "</o>")
+
+    def operand(self, depth, opening, text, type_, bits, target=False, instance=False):
+        self.line(depth, opening)
+        if text is None:
+            self.line(depth + 1, '<n n="Operand" />')
+        else:
+            self.value(depth + 1, "Operand", text)
+        for name, field in (("Type", type_), ("Comment", ""), ("SymbolComment", ""), ("Address", "")):
+            self.value(depth + 1, name, field)
+        self.flags(depth + 1, bits)
+        for name, field in (("LValue", target), ("Boolean", type_ == "BOOL"), ("IsInstance", instance)):
+            self.value(depth + 1, name, str(field).lower(), False)
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def outputs(self, depth, operands):
+        self.line(depth, '<o n="OutputItems" t="OutputItemList">')
+        if not operands:
+            self.line(depth + 1, '<l2 n="OutputItems" />')
+        else:
+            self.line(depth + 1, '<l2 n="OutputItems" cet="Operand">')
+            for one in operands:
+                if one is None:
+                    self.line(depth + 2, "<n />")
+                elif one == "":
+                    self.operand(depth + 2, "<o>", "", "", 0, target=True)
+                else:
+                    one = one if isinstance(one, tuple) else var(one)
+                    self.operand(depth + 2, "<o>", one[1], one[2], one[3], target=True)
+            self.line(depth + 1, "</l2>")
+        self.line(depth, "</o>")
+
+    def texts(self, depth, name, texts):
+        if not texts:
+            self.line(depth, f'<l2 n="{name}" />')
+            return
+        self.line(depth, f'<l2 n="{name}" cet="String">')
+        for text in texts:
+            self.line(depth + 1, f"<v>{escape(text)}</v>")
+        self.line(depth, "</l2>")
+
+    TYPES = {"operand": "BoxTreeOperand", "box": "BoxTreeBox", "assign": "BoxTreeAssign",
+             "demux": "BoxTreeDemux", "parallel": "BoxTreeParallel", "terminator": "BoxTreeTerminator"}
+
+    def tree(self, depth, tree, name=None, common=None):
+        if tree is None:
+            self.line(depth, f'<n n="{name}" />' if name else "<n />")
+            return
+        type_ = self.TYPES[tree[0]]
+        opening = "<o" + (f' n="{name}"' if name else "") + ("" if common == type_ else f' t="{type_}"')
+        self.line(depth, opening + ">")
+        getattr(self, "in_" + tree[0])(depth + 1, *tree[1:])
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def trees(self, depth, name, trees):
+        kinds = {self.TYPES[t[0]] for t in trees if t is not None}
+        common = next(iter(kinds)) if len(kinds) == 1 else None
+        if not trees:
+            self.line(depth, f'<l2 n="{name}" />')
+            return
+        self.line(depth, f'<l2 n="{name}"' + (f' cet="{common}">' if common else ">"))
+        for one in trees:
+            self.tree(depth + 1, one, common=common)
+        self.line(depth, "</l2>")
+
+    def in_operand(self, depth, text, type_, bits):
+        self.operand(depth, '<o n="Operand" t="Operand">', text, type_, bits)
+
+    def in_box(self, depth, type_, inputs, instance, names, outputs, out_names, out_types, en, call,
+               bits, marks):
+        self.value(depth, "BoxType", type_)
+        self.operand(depth, '<o n="Instance" t="Operand">', instance, "", 0, instance=True)
+        self.outputs(depth, outputs)
+        self.flags(depth, bits)
+        if marks:
+            self.line(depth, '<l2 n="InputFlags" cet="Flags">')
+            for mark in marks:
+                self.flags(depth + 1, mark, "")
+            self.line(depth, "</l2>")
+        else:
+            self.line(depth, '<n n="InputFlags" />')
+        self.trees(depth, "InputItems", inputs)
+        for name, pins, types in (("InputParam", names, ["BOOL"] * len(names)),
+                                  ("OutputParam", out_names, out_types)):
+            self.line(depth, f'<o n="{name}" t="ParamList">')
+            self.texts(depth + 1, "Names", pins)
+            self.texts(depth + 1, "Types", types)
+            self.line(depth, "</o>")
+        self.line(depth, f'<v n="CallType" t="Operator">{call}</v>')
+        for name in ("EN", "ENO"):
+            self.value(depth, name, str(en).lower(), False)
+        self.line(depth, '<n n="STSnippet" />')
+        self.value(depth, "ContainsExtensibleInputs", "false", False)
+        self.value(depth, "ProvidesSTSnippet", "false", False)
+
+    def in_assign(self, depth, targets, tree, bits):
+        self.outputs(depth, targets)
+        self.flags(depth, bits)
+        self.tree(depth, tree, "RValue")
+
+    def in_demux(self, depth, number, tree):
+        self.value(depth, "VarId", number, False)
+        self.tree(depth, tree, "Input")
+
+    def in_parallel(self, depth, feed, trees):
+        self.tree(depth, feed, "Input")
+        self.line(depth, '<v n="Mode" t="OperationMode">BoxShortCircuit</v>')
+        self.trees(depth, "Trees", trees)
+        self.flags(depth, 0)
+
+    def in_terminator(self, depth, tree):
+        self.tree(depth, tree, "Input")
+        self.flags(depth, 0)
+
+    def network(self, depth, trees, title="", comment="", label="", disabled=False):
+        self.line(depth, "<o>")
+        for name in ("ILActive", "FBDValid", "ILValid"):
+            self.value(depth + 1, name, "false", False)
+        self.line(depth + 1, '<l2 n="ILLines" />')
+        for name, text in (("Comment", comment), ("Title", title), ("Label", label)):
+            self.value(depth + 1, name, text)
+        self.value(depth + 1, "OutCommented", str(disabled).lower(), False)
+        self.trees(depth + 1, "NetworkItems", trees)
+        self.line(depth + 1, '<l2 n="Connectors" />')
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def body(self, depth, view, networks):
+        self.line(depth, "<Implementation>")
+        self.line(depth + 1, "<NWL>")
+        self.line(depth + 2, "<XmlArchive>")
+        self.line(depth + 3, "<Data>")
+        self.line(depth + 4, '<o xml:space="preserve" t="NWLImplementationObject">')
+        self.value(depth + 5, "NetworkListComment", "")
+        self.value(depth + 5, "DefaultViewMode", view)
+        self.line(depth + 5, '<l2 n="NetworkList" cet="Network">')
+        for one in networks:
+            trees, options = one if isinstance(one, tuple) and isinstance(one[-1], dict) else (one, {})
+            self.network(depth + 6, trees, **options)
+        self.line(depth + 5, "</l2>")
+        self.value(depth + 5, "BranchCounter", 9, False)
+        self.value(depth + 5, "ValidIds", "true", False)
+        self.line(depth + 4, "</o>")
+        self.line(depth + 3, "</Data>")
+        self.line(depth + 3, "<TypeList>")
+        for name in ("Boolean", "Int32", "Int64", "String"):
+            self.line(depth + 4, f'<Type n="{name}">System.{name}</Type>')
+        self.line(depth + 3, "</TypeList>")
+        self.line(depth + 2, "</XmlArchive>")
+        self.line(depth + 1, "</NWL>")
+        self.line(depth, "</Implementation>")
+
+
+def identity_of(name):
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, name)) + "}"
+
+
+def pou(name, declaration, view, networks, members=()):
+    """`members`: (word, name, declaration, view, networks)."""
+    out = Writer()
+    out.lines += ['<?xml version="1.0" encoding="utf-8"?>',
+                  '<TcPlcObject Version="1.1.0.1" ProductVersion="3.1.4024.12">',
+                  f'  <POU Name="{name}" Id="{identity_of(name)}" SpecialFunc="None">',
+                  f"    <Declaration><![CDATA[{declaration}]]></Declaration>"]
+    if view == "ST":
+        out.lines.append(f"    <Implementation>\n      <ST><![CDATA[{networks}]]></ST>\n"
+                         "    </Implementation>")
+    else:
+        out.body(2, view, networks)
+    for word, member, text, kind, body in members:
+        out.lines.append(f'    <{word} Name="{member}" Id="{identity_of(name + member)}">')
+        if text:
+            out.lines.append(f"      <Declaration><![CDATA[{text}]]></Declaration>")
+        out.body(3, kind, body)
+        out.lines.append(f"    </{word}>")
+    out.lines += ["  </POU>", "</TcPlcObject>", ""]
+    return "\n".join(out.lines)
+
+
+CASES = {}
+
+CASES["drawn_logic"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n, m, big, half : INT;
+	w : WORD := 16#0FF0;
+	bits, mixed : WORD;
+	a, b, both, either, none, odd, copy, more : BOOL;
+END_VAR
+""", "Fbd", [
+    ([to(var("n", "INT"), box("ADD", val("n"), val("1")))], {"title": "Counts", "comment": "one\nmore"}),
+    ([to("a", box("GT", box("MOD", val("n"), val("4")), val("1"))),
+      to("b", box("EQ", box("MOD", val("n"), val("3")), val("0")))], {}),
+    [to(["both", "copy"], box("AND", var("a"), var("b")))],
+    [to("either", box("OR", var("a"), var("b", flags=NEGATED), box("AND", var("a"), var("b"))))],
+    [to("none", box("AND", var("a"), var("b"), marks=(NEGATED, NEGATED)))],
+    [to("odd", box("XOR", var("a"), var("b"), flags=NEGATED))],
+    [to(var("more", flags=NEGATED), box("NOT", var("a")))],
+    [to(var("m", "INT"), box("SEL", var("a"), val("10"), val("MAX(n, 20)")))],
+    [to(var("bits", "WORD"), box("AND", val("w", "WORD"), val("16#00FF", "WORD")))],
+    [to(var("mixed", "WORD"), box("OR", val("bits", "WORD"), box("SHL", val("w", "WORD"), val("n"))))],
+    [box("MOVE", var("a"), val("n"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+         outputs=(None, var("big", "INT")), en=True, call="Move")],
+    [to(var("half", "INT"), box("DIV", val("n"), val("2")))],
+]), "twin": """PROGRAM MAIN
+VAR
+  n, m, big, half : INT;
+  w : WORD := 16#0FF0;
+  bits, mixed : WORD;
+  a, b, both, either, none, odd, copy, more : BOOL;
+END_VAR
+n := n + 1;
+a := n MOD 4 > 1;
+b := n MOD 3 = 0;
+both := a AND b;
+copy := both;
+either := a OR NOT b OR (a AND b);
+none := NOT a AND NOT b;
+odd := NOT (a XOR b);
+more := a;
+m := SEL(a, 10, MAX(n, 20));
+bits := w AND 16#00FF;
+mixed := bits OR SHL(w, n);
+IF a THEN big := n; END_IF
+half := n / 2;
+END_PROGRAM
+"""}
+
+CASES["drawn_timers"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	tonRun : TON;
+	ctuRuns : CTU;
+	trig : R_TRIG;
+	pulse : TP;
+	go, done, full, rose, lit, two : BOOL;
+	t : TIME;
+	n, k : INT;
+END_VAR
+""", "Fbd", [
+    [to(var("n", "INT"), box("ADD", val("n"), val("1")))],
+    [to("go", box("LT", box("MOD", val("n"), val("7")), val("5")))],
+    [fb("TON", "tonRun", {"IN": var("go"), "PT": val("T#30ms", "TIME")},
+        {"Q": "done", "ET": var("t", "TIME")}, ("BOOL", "TIME"))],
+    # The timer's Q leads on, its ET goes nowhere; the counter resets itself.
+    [to("full", fb("CTU", "ctuRuns",
+                   {"CU": fb("TON", "tonRun", {"IN": var("go"), "PT": val("T#30ms", "TIME")},
+                             {"Q": None, "ET": ""}, ("BOOL", "TIME")),
+                    "RESET": val("ctuRuns.Q", "BOOL"), "PV": val("3")},
+                   {"Q": None, "CV": var("k", "INT")}, ("BOOL", "INT")))],
+    [fb("R_TRIG", "trig", {"CLK": var("done", flags=NEGATED)}, {"Q": "rose"})],
+    [fb("TP", "pulse", {"IN": var("go", flags=RISING), "PT": val("T#20ms", "TIME")},
+        {"Q": var("lit", flags=NEGATED), "ET": ""}, ("BOOL", "TIME"))],
+    [to("two", box("AND", var("go", flags=FALLING), var("n", "INT") and val("n > 10", "BOOL")))],
+]), "twin": """PROGRAM MAIN
+VAR
+  tonRun : TON;
+  ctuRuns : CTU;
+  trig : R_TRIG;
+  pulse : TP;
+  go, done, full, rose, lit, two : BOOL;
+  t : TIME;
+  n, k : INT;
+  goRose : R_TRIG; goFell : F_TRIG;
+END_VAR
+n := n + 1;
+go := n MOD 7 < 5;
+tonRun(IN := go, PT := T#30ms, Q => done, ET => t);
+tonRun(IN := go, PT := T#30ms);
+ctuRuns(CU := tonRun.Q, RESET := ctuRuns.Q, PV := 3, CV => k);
+full := ctuRuns.Q;
+trig(CLK := NOT done, Q => rose);
+goRose(CLK := go);
+pulse(IN := goRose.Q, PT := T#20ms);
+lit := NOT pulse.Q;
+goFell(CLK := go);
+two := goFell.Q AND n > 10;
+END_PROGRAM
+"""}
+
+CASES["drawn_jumps"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n, passes, late, off : INT;
+	skip, leave : BOOL;
+END_VAR
+""", "Fbd", [
+    [to(var("n", "INT"), box("ADD", val("n"), val("1")))],
+    [to("skip", box("EQ", box("MOD", val("n"), val("2")), val("0")))],
+    [to(var("Behind", flags=JUMP), var("skip"), JUMP)],
+    [to(var("passes", "INT"), box("ADD", val("passes"), val("1")))],
+    ([to(var("off", "INT"), box("ADD", val("off"), val("1")))], {"disabled": True, "title": "Not now"}),
+    ([to("leave", box("GE", val("n"), val("9")))], {"label": "Behind"}),
+    [to(var("", flags=RETURN), var("leave"), RETURN)],
+    [],
+    [to(var("late", "INT"), val("n"))],
+]), "twin": """PROGRAM MAIN
+VAR
+  n, passes, late, off : INT;
+  skip, leave : BOOL;
+END_VAR
+n := n + 1;
+skip := n MOD 2 = 0;
+IF NOT skip THEN passes := passes + 1; END_IF
+leave := n >= 9;
+IF leave THEN RETURN; END_IF
+late := n;
+END_PROGRAM
+"""}
+
+CASES["drawn_branches"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n : INT;
+	hot, cold, latched, alarm, both, never : BOOL;
+END_VAR
+""", "Fbd", [
+    [to(var("n", "INT"), box("MOD", box("ADD", val("n"), val("3")), val("10")))],
+    [wire(1, box("GT", val("n"), val("6"))),
+     to("hot", wire(1)),
+     to(var("latched", flags=SET), box("AND", wire(1), val("n < 9", "BOOL"))),
+     to(var("alarm", flags=NEGATED), wire(1))],
+    [to("cold", box("LT", val("n"), val("2")))],
+    [to(var("latched", flags=RESET), var("cold"))],
+    [to("both", wire(2, box("OR", var("hot"), var("cold")))), to("never", box("AND", wire(2), val("FALSE", "BOOL")))],
+]), "twin": """PROGRAM MAIN
+VAR
+  n : INT;
+  hot, cold, latched, alarm, both, never : BOOL;
+END_VAR
+n := (n + 3) MOD 10;
+hot := n > 6;
+IF hot AND n < 9 THEN latched := TRUE; END_IF
+alarm := NOT hot;
+cold := n < 2;
+IF cold THEN latched := FALSE; END_IF
+both := hot OR cold;
+never := FALSE;
+END_PROGRAM
+"""}
+
+CASES["drawn_ladder"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n : INT;
+	start, stop, thermal, motor, lamp, fault, blink, hold, always, third : BOOL;
+END_VAR
+""", "Ld", [
+    [box("ADD", RAIL, val("n"), val("1"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+         outputs=(None, var("n", "INT")), en=True, call="Add")],
+    [to("start", box("EQ", RAIL, val("n MOD 9"), val("2"), names=("EN",), out_names=("",), out_types=("BOOL",),
+                     outputs=(None,), en=True, call="Eq"))],
+    [to("stop", box("EQ", RAIL, val("n MOD 9"), val("7"), names=("EN",), out_names=("",), out_types=("BOOL",),
+                    outputs=(None,), en=True, call="Eq"))],
+    ([to("motor", box("AND", box("OR", var("start"), var("motor")), var("stop", flags=NEGATED),
+                      var("thermal", flags=NEGATED)))], {"title": "Motor", "comment": "seals itself in"}),
+    [to(["lamp", var("blink", flags=NEGATED)], parallel(var("motor"), var("start", flags=NEGATED), var("stop")))],
+    [to(var("fault", flags=SET), box("AND", var("motor", flags=FALLING), val("n > 12", "BOOL")))],
+    [to(var("fault", flags=RESET), var("start", flags=RISING))],
+    [to("hold", parallel(None, box("AND", var("motor"), var("lamp")), var("fault")))],
+    [to("always", RAIL)],
+    [to("third", ("terminator", box("AND", var("motor"), parallel(var("lamp"), var("start"), var("hold")))))],
+]), "twin": """PROGRAM MAIN
+VAR
+  n : INT;
+  start, stop, thermal, motor, lamp, fault, blink, hold, always, third : BOOL;
+  fell : F_TRIG; rose : R_TRIG;
+END_VAR
+n := n + 1;
+start := n MOD 9 = 2;
+stop := n MOD 9 = 7;
+motor := (start OR motor) AND NOT stop AND NOT thermal;
+lamp := motor AND (NOT start OR stop);
+blink := NOT (motor AND (NOT start OR stop));
+fell(CLK := motor);
+IF fell.Q AND n > 12 THEN fault := TRUE; END_IF
+rose(CLK := start);
+IF rose.Q THEN fault := FALSE; END_IF
+hold := (motor AND lamp) OR fault;
+always := TRUE;
+third := motor AND lamp AND (start OR hold);
+END_PROGRAM
+"""}
+
+CASES["drawn_rung_boxes"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n, k, state, copy : INT;
+	run, done, reset, full, moved : BOOL;
+	tonFill : TON;
+	ctuFill : CTU;
+END_VAR
+""", "Ld", [
+    [box("ADD", RAIL, val("n"), val("1"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+         outputs=(None, var("n", "INT")), en=True, call="Add")],
+    [to("run", box("LT", RAIL, val("n MOD 8"), val("6"), names=("EN",), out_names=("",), out_types=("BOOL",),
+                   outputs=(None,), en=True, call="Lt"))],
+    [to("done", fb("TON", "tonFill", {"IN": var("run"), "PT": val("T#20ms", "TIME")},
+                   {"Q": None, "ET": ""}, ("BOOL", "TIME")))],
+    [to("full", fb("CTU", "ctuFill", {"CU": var("done"), "RESET": var("reset"), "PV": val("2")},
+                   {"Q": None, "CV": var("k", "INT")}, ("BOOL", "INT")))],
+    [to("reset", box("AND", var("full"), var("run", flags=NEGATED)))],
+    # MOVE gets its EN from the ENO of another one.
+    [box("MOVE",
+         box("MOVE", var("full"), val("n"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+             outputs=(None, var("state", "INT")), en=True, call="Move"),
+         val("state"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+         outputs=("moved", var("copy", "INT")), en=True, call="Move")],
+]), "twin": """PROGRAM MAIN
+VAR
+  n, k, state, copy : INT;
+  run, done, reset, full, moved : BOOL;
+  tonFill : TON;
+  ctuFill : CTU;
+END_VAR
+n := n + 1;
+run := n MOD 8 < 6;
+tonFill(IN := run, PT := T#20ms, Q => done);
+ctuFill(CU := done, RESET := reset, PV := 2, Q => full, CV => k);
+reset := full AND NOT run;
+IF full THEN state := n; copy := state; END_IF
+moved := full;
+END_PROGRAM
+"""}
+
+CASES["drawn_members"] = {"FB_Count": pou("FB_Count", """FUNCTION_BLOCK FB_Count
+VAR_INPUT
+	bUp : BOOL;
+END_VAR
+VAR_OUTPUT
+	nValue : INT;
+END_VAR
+VAR
+	bSeen : BOOL;
+END_VAR
+""", "Fbd", [
+    [to(var("bSeen"), box("AND", var("bUp"), var("bSeen", flags=NEGATED)))],
+    [to(var("nValue", "INT"), box("Next", var("bSeen"), val("nValue"), names=("step", "from"), out_names=("Next",),
+                                  out_types=("INT",), outputs=(None,), call="Method"))],
+], members=[
+    ("Method", "Next", """METHOD Next : INT
+VAR_INPUT
+	step : BOOL;
+	from : INT;
+END_VAR
+""", "Fbd", [[to(var("Next", "INT"), box("SEL", var("step"), val("from"), box("ADD", val("from"), val("1"))))]]),
+    ("Action", "Clear", "", "Ld", [[box("MOVE", RAIL, val("0"), names=("EN",), out_names=("ENO", ""),
+                                         out_types=("BOOL", "INT"), outputs=(None, var("nValue", "INT")), en=True,
+                                         call="Move")]]),
+]), "MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	fbCount : FB_Count;
+	n, seen : INT;
+END_VAR
+""", "ST", """n := n + 1;
+fbCount(bUp := n MOD 2 = 1, nValue => seen);
+IF n = 30 THEN
+	fbCount.Clear();
+END_IF"""), "twin": """FUNCTION_BLOCK FB_Count
+VAR_INPUT bUp : BOOL; END_VAR
+VAR_OUTPUT nValue : INT; END_VAR
+VAR bSeen : BOOL; END_VAR
+METHOD Next : INT
+VAR_INPUT step : BOOL; from : INT; END_VAR
+Next := SEL(step, from, from + 1);
+END_METHOD
+ACTION Clear: nValue := 0; END_ACTION
+bSeen := bUp AND NOT bSeen;
+nValue := Next(bSeen, nValue);
+END_FUNCTION_BLOCK
+PROGRAM MAIN
+VAR fbCount : FB_Count; n, seen : INT; END_VAR
+n := n + 1;
+fbCount(bUp := n MOD 2 = 1, nValue => seen);
+IF n = 30 THEN fbCount.Clear(); END_IF
+END_PROGRAM
+"""}
+
+CASES["drawn_calls"] = {"FB_Valve": pou("FB_Valve", """FUNCTION_BLOCK FB_Valve
+VAR
+	bOpen : BOOL;
+	nMoves : INT;
+END_VAR
+""", "ST", "", members=[
+    ("Method", "Open", """METHOD Open : BOOL
+VAR_INPUT
+	bForce : BOOL;
+END_VAR
+""", "Fbd", [[to(var("bOpen", flags=SET), val("bForce OR nMoves < 3", "BOOL"))],
+             [to(var("nMoves", "INT"), box("ADD", val("nMoves"), val("1")))],
+             [to("Open", var("bOpen"))]]),
+]), "F_Scale": pou("F_Scale", """FUNCTION F_Scale : INT
+VAR_INPUT
+	nRaw, nFactor : INT;
+END_VAR
+""", "Fbd", [[to(var("F_Scale", "INT"), box("MUL", val("nRaw"), val("nFactor")))]]),
+    "MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	fbValve : FB_Valve;
+	n, scaled : INT;
+	opened, ok : BOOL;
+END_VAR
+""", "Ld", [
+    [box("ADD", RAIL, val("n"), val("1"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+         outputs=(None, var("n", "INT")), en=True, call="Add")],
+    # A method of an instance, gated: ENO is the first output, its result the second.
+    [box("fbValve.Open", box("EQ", RAIL, val("n MOD 5"), val("0"), names=("EN",), out_names=("",),
+                             out_types=("BOOL",), outputs=(None,), en=True, call="Eq"),
+         val("n > 20", "BOOL"), names=("EN", "bForce"), out_names=("ENO", "Open"), out_types=("BOOL", "BOOL"),
+         outputs=("ok", "opened"), en=True, call="Method")],
+    [box("F_Scale", RAIL, val("n"), val("3"), names=("EN", "nRaw", "nFactor"), out_names=("ENO", "F_Scale"),
+         out_types=("BOOL", "INT"), outputs=("", var("scaled", "INT")), en=True, call="Function")],
+]), "twin": """FUNCTION_BLOCK FB_Valve
+VAR bOpen : BOOL; nMoves : INT; END_VAR
+METHOD Open : BOOL
+VAR_INPUT bForce : BOOL; END_VAR
+IF bForce OR nMoves < 3 THEN bOpen := TRUE; END_IF
+nMoves := nMoves + 1;
+Open := bOpen;
+END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION F_Scale : INT
+VAR_INPUT nRaw, nFactor : INT; END_VAR
+F_Scale := nRaw * nFactor;
+END_FUNCTION
+PROGRAM MAIN
+VAR fbValve : FB_Valve; n, scaled : INT; opened, ok : BOOL; END_VAR
+n := n + 1;
+ok := n MOD 5 = 0;
+IF ok THEN opened := fbValve.Open(bForce := n > 20); END_IF
+scaled := F_Scale(n, 3);
+END_PROGRAM
+"""}
+
+
+def main(folder):
+    for name, files in CASES.items():
+        for file, text in files.items():
+            path = os.path.join(folder, "drawn", name + ".st") if file == "twin" else \
+                os.path.join(folder, "twincat", name, file + ".TcPOU")
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "w", encoding="utf-8", newline="\n") as out:
+                out.write(text)
+
+
+main(sys.argv[1])
