@@ -6,6 +6,7 @@
 
 #include "adapters/twincat/network_reader.h"
 #include "base/limits.h"
+#include "frontend/network/head.h"
 
 namespace twincat {
 namespace {
@@ -263,9 +264,7 @@ std::vector<std::string> lines_of(std::string_view text) {
 }  // namespace
 
 network::Network NetworkReader::run(Node network) {
-  for (const std::string& line : lines_of(member_text(network, "Title"))) {
-    out_.title += (out_.title.empty() ? "" : " ") + line;
-  }
+  out_.title = network::title_of(xml::trimmed(member_text(network, "Title")));
   out_.label.text = member_text(network, "Label");
   out_.comments = lines_of(member_text(network, "Comment"));
   out_.disabled = is_true(network, "OutCommented");
@@ -295,21 +294,29 @@ std::optional<network::Body> read_networks(Node nwl, const std::string& what,
   body.language = ladder ? network::Language::kLadder : network::Language::kFbd;
   uint32_t number = 0;
   bool failed = false;
+  bool below_head = false;
+  std::vector<std::string> comments = lines_of(member_text(object, "NetworkListComment"));
   for (const Item& item : items(object, "NetworkList")) {
     report.set_network(++number);
     NetworkReader reader(ladder, what, report);
     network::Network made = reader.run(item.node);
     failed = failed || reader.failed();
+    comments.insert(comments.end(), made.comments.begin(), made.comments.end());
     // An empty one, as the editor makes them for new bodies.
-    if (!made.elements.empty() || !made.label.empty()) body.networks.push_back(std::move(made));
+    if (made.elements.empty() && made.label.empty()) {
+      if (!made.title.empty()) comments.push_back(made.title);
+      continue;
+    }
+    made.comments = std::move(comments);
+    comments.clear();
+    // As text, what stands below a network with a head needs one.
+    made.headed = !made.title.empty() || made.disabled || (below_head && made.label.empty());
+    below_head = made.headed;
+    body.networks.push_back(std::move(made));
   }
   report.set_network(0);
   if (failed) return std::nullopt;
-  const std::vector<std::string> lines = lines_of(member_text(object, "NetworkListComment"));
-  if (!body.networks.empty()) {
-    std::vector<std::string>& comments = body.networks.front().comments;
-    comments.insert(comments.begin(), lines.begin(), lines.end());
-  }
+  if (!comments.empty()) body.networks.emplace_back().comments = std::move(comments);
   return body;
 }
 

@@ -245,7 +245,8 @@ box() {  # box TYPE MORE: its pins from standard input
 }
 printf '<o>%s<o n="RValue" t="BoxTreeOperand">%s</o></o>' "$(to a)" "$(op b)" | items ' cet="BoxTreeAssign"' | drawn Ld
 expect 0 stc import drawn.TcPOU -o drawn_text
-grep -qx '  |--\[ b \]--( a )--|' drawn_text/Drawn.st || fail "the rung"
+grep -Eqx '  .--\[ b \]-+\( a \)--.' drawn_text/Drawn.st || fail "the rung"
+grep -qx "  {network 'Second'}" drawn_text/Drawn.st || fail "the title"
 grep -q '(\* All \*)' drawn_text/Drawn.st || fail "the comment"
 items '' <<X | refused 'an element of type .\?. is not known here'
 <o>$(op b)</o>
