@@ -4,74 +4,11 @@
 #include <map>
 #include <set>
 
-#include "adapters/plcopen/drawing.h"
-#include "adapters/plcopen/reader.h"
+#include "adapters/plcopen/chart_reader.h"
 #include "base/name_case.h"
 
 namespace plcopen {
 namespace {
-
-struct Action {
-  Node node;
-  std::string name;  // of an ACTION or variable
-  std::string body;  // of one that stands in the step; empty: elsewhere
-};
-
-struct ChartElement {
-  Node node;
-  std::string name;           // steps: as the text has it
-  std::vector<size_t> above;  // elements
-  std::vector<size_t> below;
-  std::vector<Action> actions;  // steps
-};
-
-// From an element to the next one; `joined`: after a convergence or divergence of simultaneous
-// branches, so several are meant.
-struct Way {
-  const ChartElement* from;
-  const ChartElement* to;
-  bool joined;
-};
-
-class Chart {
- public:
-  Chart(Node sfc, Node pou, Reporter& report)
-      : sfc_(sfc), pou_(pou), report_(report), drawing_(true, report) {}
-  std::string text();
-  std::set<std::string> made_actions;  // names of those that stand in steps, folded
-
- private:
-  void collect();
-  void add_condition_element(Node node);
-  void connect();
-  void add_actions(Node block);
-  std::string step_name(Node node);
-  void reserve_names();
-  // Names of the steps that a transition leaves (`up`) or enters, through what lies between.
-  std::vector<std::string> steps_beside(const ChartElement& transition, bool up);
-  void push_neighbours(const ChartElement& element, bool up, bool joined, std::vector<Way>& todo);
-  std::string jump_target(const ChartElement& jump);
-  std::string step_text(const ChartElement& step);
-  std::string transition_text(const ChartElement& transition);
-  std::string condition(const ChartElement& transition);
-  std::string plain_condition(const ChartElement& transition);
-  std::string priority(Node transition);
-
-  Node sfc_;
-  Node pou_;
-  Reporter& report_;
-  Drawing drawing_;                // conditions
-  std::vector<ChartElement> elements_;  // in the order of the drawing
-  std::map<uint64_t, size_t> by_id_;
-  std::map<std::string, Node> transitions_;  // that have names, folded
-  std::string comments_;
-  xml::Names steps_;
-  std::map<std::string, std::string> renamed_;  // steps, by their folded names in XML
-  xml::Names actions_;                          // and what else actions may not be called
-  bool prioritised_ = false;
-  size_t ways_ = 0;                    // that were followed
-  std::set<const ChartElement*> followed_;  // for one transition: each once, so loops end
-};
 
 constexpr size_t kMaxWays = 5'000'000;  // of all transitions together
 
@@ -86,6 +23,8 @@ bool is_between(Node node) {
 double place(Node node, const char* axis) {
   return xml::child(node, "position").attribute(axis).as_double();
 }
+
+}  // namespace
 
 // Empty, after a report, when it has none, or that of another step.
 std::string Chart::step_name(Node node) {
@@ -137,6 +76,14 @@ void Chart::collect() {
     if (step) {
       element.name = step_name(node);
       if (element.name.empty()) continue;
+      const std::string time = chart_attributes(node, nullptr)[xml::ChartAttribute::kLeastTime];
+      if (is_plain_operand(time)) {
+        least_times_[element.name] = time;
+      } else if (!time.empty()) {
+        report_.add(Code::kXmlBadValue, node,
+                    "the shortest time `" + time + "` of a step is neither time nor variable",
+                    "write it like T#5s");
+      }
     }
     elements_.push_back(std::move(element));
   }
@@ -211,7 +158,7 @@ void Chart::add_actions(Node block) {
   }
   ChartElement& step = elements_[found->second];
   for (Node node : xml::children(block, "action")) {
-    Action action{node, {}, {}};
+    ChartAction action{node, {}, {}};
     Node reference = xml::child(node, "reference");
     Node inside = xml::child(node, "inline");
     if (reference) {
@@ -298,58 +245,15 @@ std::string Chart::step_text(const ChartElement& step) {
   const bool initial = xml::boolean(xml::attribute(step.node, "initialStep")).value_or(false);
   std::string out = documentation(step.node, "");
   out += (initial ? "INITIAL_STEP " : "STEP ") + step.name + ":\n";
-  for (const Action& action : step.actions)
+  out += chart_attributes(step.node, &report_).action_rows(step.node, kIndent, report_);
+  for (const ChartAction& action : step.actions) {
     out += kIndent + action_use(action.node, action.name, report_) + "\n";
+  }
   std::vector<std::string>& kept = report_.out().kept.data[base::fold_name(report_.pou())];
   const size_t count = kept.size();
   vendor_data(step.node, report_);
   kept.resize(count);  // the kept chart has it
   return out + "END_STEP\n";
-}
-
-std::string Chart::priority(Node transition) {
-  std::string text(xml::trimmed(xml::attribute(transition, "priority")));
-  if (!prioritised_ || text.empty()) return {};
-  if (id_of(text) != 0) return " (PRIORITY := " + text + ")";
-  report_.add(Code::kXmlBadValue, transition, "priority `" + text + "` is no number");
-  return {};
-}
-
-std::string Chart::plain_condition(const ChartElement& transition) {
-  Node condition = xml::child(transition.node, "condition");
-  if (Node inside = xml::child(condition, "inline")) {
-    return condition_text(inside, std::string(xml::attribute(inside, "name")), report_);
-  }
-  if (Node reference = xml::child(condition, "reference")) {
-    const std::string name(report_.required(reference, "name"));
-    auto named = transitions_.find(base::fold_name(name));
-    // Without a transition of that name it is a variable.
-    if (named == transitions_.end() && !name.empty() && !is_operand(name)) {
-      report_.add(Code::kXmlBadValue, reference, "`" + name + "` is no variable");
-      return error_text("a condition was not imported");
-    }
-    return named != transitions_.end()
-               ? condition_text(xml::child(named->second, "body"), name, report_)
-               : " := " + name + ";\n";
-  }
-  if (Node point = xml::child(condition, "connectionPointIn")) {
-    std::vector<network::Link> links = drawing_.links_of(point);
-    std::string out =
-        drawing_.failed() ? "" : links_text(drawing_.elements(), links, transition.node, report_);
-    return out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
-  }
-  report_.add(Code::kXmlBody, transition.node, "a transition has no condition");
-  return error_text("a transition has no condition");
-}
-
-std::string Chart::condition(const ChartElement& transition) {
-  const std::string out = plain_condition(transition);
-  if (!is_negated(xml::child(transition.node, "condition"), report_)) return out;
-  if (out.starts_with(" := ")) return " := NOT (" + out.substr(4, out.size() - 6) + ");\n";
-  if (!out.starts_with(":")) return out;  // an error already
-  report_.add(Code::kXmlBody, transition.node, "a condition in IL is negated",
-              "end it with NOT, or write it as an expression");
-  return error_text("a negated condition was not imported");
 }
 
 std::string Chart::transition_text(const ChartElement& transition) {
@@ -369,7 +273,7 @@ std::string Chart::transition_text(const ChartElement& transition) {
   };
   std::string out = documentation(transition.node, "");
   out += "TRANSITION" + priority(transition.node) + " FROM " + list(from) + " TO " + list(to);
-  return out + condition(transition) + "END_TRANSITION\n";
+  return out + late_condition(transition, from) + "END_TRANSITION\n";
 }
 
 std::string Chart::text() {
@@ -378,15 +282,13 @@ std::string Chart::text() {
   for (const ChartElement& element : elements_) {
     if (xml::is(element.node, "step")) {
       steps += step_text(element);
-      for (const Action& action : element.actions) actions += action.body;
+      for (const ChartAction& action : element.actions) actions += action.body;
     } else if (xml::is(element.node, "transition")) {
       transitions += transition_text(element);
     }
   }
   return comments_ + steps + transitions + actions;
 }
-
-}  // namespace
 
 std::string chart_text(Node sfc, Node pou, Reporter& report) {
   Chart chart(sfc, pou, report);

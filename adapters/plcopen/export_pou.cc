@@ -178,7 +178,8 @@ void Writer::pou(Node parent, const Pou& pou) {
   interface(node, pou, type);
   Node actions = node.append_child("actions");
   auto add_action = [&](const frontend::Name& action, base::SourceSpan span,
-                        const std::string& text, frontend::Range32 statements, uint32_t drawn) {
+                        const std::string& text, frontend::Range32 statements, uint32_t drawn,
+                        frontend::Range32 attributes) {
     Node each = actions.append_child("action");
     each.append_attribute("name") = std::string(action.text).c_str();
     bool list = false;
@@ -186,19 +187,20 @@ void Writer::pou(Node parent, const Pou& pou) {
       list = list || tree_[tree_.stmt_lists[statements.first + i]].instruction;
     }
     put_body(each.append_child("body"), text, list, drawn, name + "." + std::string(action.text));
+    put_attributes(each, attributes);
     put_documentation(each, comment_before(span.begin));
   };
   for (const Pou& member : pou.members) {
     if (member.kind != PouKind::kAction) continue;
     add_action(member.name, member.span, pieces(member.span, head_end(member)).body, member.body,
-               member.diagram);
+               member.diagram, member.attributes);
   }
   const xml::KeptChart* kept = kept_chart(pou);
   if (pou.chart != frontend::kNoChart) {
     for (const frontend::ChartAction& action : tree_.charts[pou.chart].actions) {
       if (kept != nullptr && kept->actions.count(base::fold_name(action.name.text)) != 0) continue;
       add_action(action.name, action.span, pieces(action.span, action.name.span.end).body,
-                 action.body, action.diagram);
+                 action.body, action.diagram, action.attributes);
     }
   }
   if (!actions.first_child()) node.remove_child(actions);

@@ -73,10 +73,13 @@ std::string property(Node node, Reporter& report) {
   return out + "END_PROPERTY\n";
 }
 
-std::string action(Node node, Reporter& report) {
+std::string action(Node node, const xml::OwnActions& of_steps, Reporter& report) {
   const std::string name(report.required_name(node));
   if (name.empty()) return {};
-  return documentation(node, "") + "ACTION " + name + ":\n" +
+  std::string attributes = vendor_data(node, report).attributes;
+  const std::string of_step = of_steps.head(name);
+  if (attributes.find(of_step) == std::string::npos) attributes += of_step;
+  return documentation(node, "") + attributes + "ACTION " + name + ":\n" +
          xml::indented(body_text(node, "action " + name, report), kIndent) + "END_ACTION\n";
 }
 
@@ -87,7 +90,13 @@ std::string members(const Vendor& vendor, Node pou, Reporter& report) {
   };
   for (Node node : vendor.methods) add(method(node, report));
   for (Node node : vendor.properties) add(property(node, report));
-  for (Node node : xml::children(xml::child(pou, "actions"), "action")) add(action(node, report));
+  const xml::OwnActions of_steps = own_actions(pou);
+  for (const bool entry : {true, false}) {  // in the order in which they run in a scan
+    for (Node node : xml::children(xml::child(pou, "actions"), "action")) {
+      if (of_steps.is_entry(xml::attribute(node, "name")) != entry) continue;
+      add(action(node, of_steps, report));
+    }
+  }
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "adapters/xml/chart_attributes.h"
 #include "adapters/xml/document.h"
 
 namespace plcopen {
@@ -85,6 +86,12 @@ bool is_plain_operand(std::string_view text);  // the same without calls and bra
 
 // --- chart.cc
 std::string chart_text(Node sfc, Node pou, Reporter& report);
+// --- chart_data.cc
+// What CODESYS keeps beside an element of a chart; null: nothing is reported.
+xml::ChartAttributes chart_attributes(Node element, Reporter* report);
+// Of all steps of the charts in `pou`.
+xml::OwnActions own_actions(Node pou);
+bool is_chart_data(Node data);
 
 // --- kept.cc
 // `node` with everything in it as text that needs no declarations around it.

@@ -87,7 +87,7 @@ std::vector<Node> vendor_parts(Node owner) {
 }
 
 void report_data(Node data, Reporter& report) {
-  if (is_source_data(data)) return;
+  if (is_source_data(data) || is_chart_data(data)) return;
   const std::string name(xml::attribute(data, "name"));
   for (const char* known : kEditor) {
     if (!is_vendor(data, known)) continue;

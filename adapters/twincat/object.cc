@@ -1,4 +1,8 @@
 // One object -> one source.
+#include <algorithm>
+#include <vector>
+
+#include "adapters/twincat/chart.h"
 #include "adapters/twincat/networks.h"
 #include "adapters/twincat/twincat.h"
 #include "adapters/xml/diagram_text.h"
@@ -19,13 +23,6 @@ std::string error_pragma(std::string text) {
     if (c == '\'' || c == '"' || c == '{' || c == '}' || c == '$') c = ' ';
   }
   return "{error '" + text + "'}\n";
-}
-
-// As people call it, with the word of the file.
-std::string language_of(Node form) {
-  const std::string word(xml::local_name(form));
-  if (word == "SFC") return "a chart (SFC)";
-  return word;
 }
 
 // The export of TwinCAT has CFC in a form of its own, too.
@@ -119,7 +116,13 @@ std::string ObjectWriter::body(Node owner, const std::string& what) {
       out += networks(form, what);
       continue;
     }
-    const std::string text = "the body of " + what + " is in " + language_of(form) +
+    if (xml::is(form, "SFC")) {
+      const std::string text = chart_text(form, object_, what, report_);
+      out += text.empty() ? error_pragma("the body of " + what + " was not imported") : text;
+      continue;
+    }
+    const std::string text = "the body of " + what + " is in " +
+                             std::string(xml::local_name(form)) +
                              ", which is documented nowhere and cannot be imported";
     const std::string fix = way_out(form);
     report_.add(Code::kGraphicalBody, form, text, fix);
@@ -150,7 +153,14 @@ std::string ObjectWriter::member(Node node, const char* end) {
 }
 
 void ObjectWriter::members(Node parent, std::string& out) {
-  for (Node node : xml::children(parent)) {
+  const xml::OwnActions of_steps =
+      own_actions(xml::child(xml::child(parent, "Implementation"), "SFC"));
+  std::vector<Node> nodes = xml::children(parent);
+  // In the order in which they run in a scan.
+  std::stable_partition(nodes.begin(), nodes.end(), [&](Node node) {
+    return xml::is(node, "Action") && of_steps.is_entry(xml::attribute(node, "Name"));
+  });
+  for (Node node : nodes) {
     std::string text;
     if (xml::is(node, "Method")) {
       text = member(node, "END_METHOD");
@@ -159,9 +169,10 @@ void ObjectWriter::members(Node parent, std::string& out) {
     } else if (xml::is(node, "Action")) {
       std::string name(report_.required_name(node, "Name"));
       if (name.empty()) continue;
-      text = "ACTION " + name + ":\n" + xml::indented(body(node, "action " + name), kIndent) +
-             "END_ACTION\n";
+      text = of_steps.head(name) + "ACTION " + name + ":\n" +
+             xml::indented(body(node, "action " + name), kIndent) + "END_ACTION\n";
     } else if (xml::is(node, "Transition")) {
+      if (xml::child(xml::child(parent, "Implementation"), "SFC")) continue;  // where it is named
       report_.add(Code::kXmlNotUnderstood, node,
                   xml::shown(node) + " belongs to a chart, and is left out like that");
     } else if (xml::is(node, "Folder")) {

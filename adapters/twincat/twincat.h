@@ -1,8 +1,7 @@
 // TwinCAT 3: objects (.TcPOU .TcDUT .TcGVL .TcIO .TcTTO) and projects (.plcproj) -> sources. An
-// object holds its declaration and its bodies as text, without the END_ words. Ladder and function
-// block diagrams are trees (networks.h). Charts and CFC are the inside of an editor and documented
-// nowhere: such a body is an error (E1080), and an {error} stands in its place, so it is never taken
-// for empty.
+// object holds its declaration and its bodies as text, without the END_ words. Drawn bodies are
+// objects of the editor: networks are trees (networks.h), charts are lists (chart.h). CFC is an
+// error (E1080), and an {error} stands in its place, so it is never taken for empty.
 #pragma once
 
 #include <string>

@@ -196,9 +196,13 @@ void ChartBody::control(uint32_t number) {
   ir::ValueId q = wants(number, keep);
   ir::ValueId late =
       either(q, pulse(ActionQualifier::kP1, entered_));  // what was entered is active
+  ir::ValueId early = build_.constant(kFlag, 0);
+  const bool ends_at_once =
+      action.decl != nullptr &&
+      tree_.find_attribute(action.decl->attributes, kNoFinalScan) != nullptr;
   ir::Place due = part(record, "FINAL_DUE");
-  ir::ValueId early = both(build_.load(due, kFlag), no(q));
-  build_.store(due, kFlag, q);
+  if (!ends_at_once) early = both(build_.load(due, kFlag), no(q));
+  build_.store(due, kFlag, ends_at_once ? early : q);
   ir::ValueId released = pulse(ActionQualifier::kP0, left_);
   early = either(early, released);
   if (action.decl == nullptr) late = either(late, released);

@@ -23,6 +23,10 @@ enum class ActionQualifier : uint8_t {
   kDS,  // delayed, then stored when the step is still active
   kSL,  // stored, for a limited time even when the step is left meanwhile
 };
+// Attribute of an ACTION that has no final scan, as the actions that CODESYS and TwinCAT give to a
+// step itself.
+inline constexpr std::string_view kNoFinalScan = "no_final_scan";
+
 constexpr bool needs_time(ActionQualifier qualifier) {
   return qualifier == ActionQualifier::kL || qualifier == ActionQualifier::kD ||
          qualifier >= ActionQualifier::kSD;

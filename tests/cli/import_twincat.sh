@@ -206,7 +206,7 @@ said "ladder\.TcPOU:6:[0-9]+: error\[E1083\]: POU Ladder: the body of Ladder hol
 expect 1 stc import ladder.TcPOU -o nwl
 expect 1 stc check nwl
 said 'nwl/Ladder\.st:[0-9]+:[0-9]+: error\[E[0-9]+\]: the body of Ladder was not imported'
-for word in SFC CFC IL Other; do
+for word in CFC IL Other; do
   sed "s/NWL>/$word>/g" ladder.TcPOU >other.TcPOU
   expect 1 stc check other.TcPOU
   said "other\.TcPOU:6:[0-9]+: error\[E1080\]: POU Ladder: the body of Ladder is in .*$word"
@@ -214,7 +214,7 @@ done
 sed 's/NWL>/CFC>/g' ladder.TcPOU >other.TcPOU
 expect 1 stc check other.TcPOU
 said 'write it in ST, ladder or FBD in TwinCAT'
-sed 's/NWL>/SFC>/g' ladder.TcPOU >other.TcPOU
+sed 's/NWL>/IL>/g' ladder.TcPOU >other.TcPOU
 expect 1 stc check other.TcPOU
 said 'export the POU as PLCopen XML in TwinCAT \(Export PLCopenXML\), and import that file'
 

@@ -25,7 +25,7 @@ adapters/modbus: ir/types ir/bytecode vm/io vm/runtime
 adapters/keys: online_change/package/signed_file.h
 adapters/mqtt:
 adapters/xml: frontend/lex frontend/network
-adapters/twincat: adapters/xml
+adapters/twincat: adapters/xml frontend/network
 adapters/plcopen: adapters/xml frontend/network frontend/ladder frontend/fbd frontend/lex frontend/parse ir/types
 online_change/diff: ir linker
 online_change/plan: ir linker online_change/diff

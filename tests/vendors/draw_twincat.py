@@ -223,6 +223,136 @@ class Writer:
         self.line(depth, "</Implementation>")
 
 
+    # --- charts: steps, transitions, jumps and branches, each with attributes by their ids
+
+    def attributes(self, depth, values):
+        self.line(depth, '<l2 n="Attributes" cet="SFCAttribute">')
+        for name, value in values.items():
+            self.line(depth + 1, "<o>")
+            self.value(depth + 2, "AttributeId", "{" + CHART_IDS[name] + "}", False)
+            bool_ = value in (True, False)
+            self.line(depth + 2, f'<o n="Value" t="{"BoolValue" if bool_ else "StringValue"}">')
+            self.value(depth + 3, "Value", str(value).upper() if bool_ else value)
+            self.value(depth + 3, "DefaultValue", "FALSE" if bool_ else "")
+            self.line(depth + 2, "</o>")
+            self.identity(depth + 2)
+            self.value(depth + 2, "IdParent", "0L", False)
+            self.line(depth + 1, "</o>")
+        self.line(depth, "</l2>")
+
+    def chart_list(self, depth, elements):
+        self.line(depth, '<o n="ElementList" t="SFCElementList">')
+        if elements:
+            self.line(depth + 1, '<l2 n="InnerList">')
+            for one in elements:
+                getattr(self, "chart_" + one[0])(depth + 2, *one[1:])
+            self.line(depth + 1, "</l2>")
+        else:
+            self.line(depth + 1, '<l2 n="InnerList" />')
+        self.line(depth, "</o>")
+
+    def chart_step(self, depth, name, own, actions):
+        self.line(depth, '<o t="SFCStep">')
+        for what in ("Main", "Entry", "Exit"):
+            self.line(depth + 1, f'<n n="Embedded{what}Action" />')
+        self.chart_list(depth + 1, [("action", *one) for one in actions])
+        values = {"Name": name, "Comment": own.get("Comment", ""), "Exclude": False,
+                  "InitStep": own.get("InitStep", False), "Duplication": False}
+        for key in ("MinTime", "MaxTime", "MainAction", "EntryAction", "ExitAction"):
+            values[key] = own.get(key, "")
+        self.attributes(depth + 1, values)
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def chart_action(self, depth, name, qualifier):
+        self.line(depth, '<o t="SFCAction">')
+        self.attributes(depth + 1, {"Name": name, "Qualifier": qualifier})
+        self.line(depth, "</o>")
+
+    def chart_transition(self, depth, condition, comment=""):
+        self.line(depth, '<o t="SFCTransition">')
+        self.line(depth + 1, '<n n="VariableName" />')
+        self.line(depth + 1, '<n n="EmbeddedTransition" />')
+        self.attributes(depth + 1, {"Name": condition, "Comment": comment, "Exclude": False})
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def chart_jump(self, depth, target):
+        self.line(depth, '<o t="SFCJump">')
+        self.attributes(depth + 1, {"Name": target, "Comment": "", "Exclude": False})
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def chart_branch(self, depth, parallel_, ways):
+        self.line(depth, '<o t="SFCBranch">')
+        self.line(depth + 1, '<l2 n="Segments" cet="SFCSegment">')
+        for way in ways:
+            self.line(depth + 2, "<o>")
+            self.chart_list(depth + 3, way)
+            self.line(depth + 3, '<l2 n="Attributes" />')
+            self.line(depth + 2, "</o>")
+        self.line(depth + 1, "</l2>")
+        self.attributes(depth + 1, {"Exclude": False, "Parallel": parallel_})
+        self.identity(depth + 1)
+        self.line(depth, "</o>")
+
+    def chart(self, depth, elements):
+        self.line(depth, "<Implementation>")
+        self.line(depth + 1, "<SFC>")
+        self.line(depth + 2, "<XmlArchive>")
+        self.line(depth + 3, "<Data>")
+        self.line(depth + 4, '<o xml:space="preserve" t="SFCImplementationObject">')
+        self.line(depth + 5, '<o n="Root" t="SFCSegment">')
+        self.chart_list(depth + 6, elements)
+        self.line(depth + 6, '<l2 n="Attributes" />')
+        self.line(depth + 5, "</o>")
+        self.line(depth + 5, '<d2 n="Attributes" ckt="Guid" cvt="SFCAttributeDescription">')
+        for name, id_ in CHART_IDS.items():
+            self.line(depth + 6, f"<v>{id_}</v>")
+            self.line(depth + 6, "<o>")
+            self.value(depth + 7, "Id", "{" + id_ + "}", False)
+            self.value(depth + 7, "Identifier", name)
+            self.line(depth + 6, "</o>")
+        self.line(depth + 5, "</d2>")
+        self.line(depth + 4, "</o>")
+        self.line(depth + 3, "</Data>")
+        self.line(depth + 2, "</XmlArchive>")
+        self.line(depth + 1, "</SFC>")
+        self.line(depth, "</Implementation>")
+
+
+CHART_IDS = {
+    "Name": "38391c6d-6d4a-42f8-8ee7-9f45e5adafa8", "MainAction": "700a583f-b4d4-43e4-8c14-629c7cd3bec8",
+    "EntryAction": "a6b08bd8-b696-47e3-9cbf-7408b61c9ff8",
+    "ExitAction": "a2621e18-7de3-4ea6-ae6d-89e9e0b7befd",
+    "InitStep": "6844a48e-46c2-4cc8-a185-a478f3b99cc0", "Parallel": "23bdaa98-72ec-41f7-817b-9dede5697086",
+    "Qualifier": "e174fc0d-80b0-4a9e-a530-ca239c249a50", "MinTime": "cacf1a68-236e-47c2-b7b1-1cf9199718cb",
+    "MaxTime": "b693554c-1b01-4a8d-afde-9e3a46f7465d", "Comment": "7d894980-aeea-405c-a0f6-e2b26429c58f",
+    "Exclude": "01580b27-6378-448b-8ecb-0e4b795b58d6", "Monitoring": "8294df19-5962-4dee-a874-1051dabb0e3e",
+    "Duplication": "62e1754b-7629-4e63-9cec-10ae0c536f1f", "Symbol": "bc882c11-1e91-4dd8-a6b8-2075724ed18b",
+}
+
+
+def step(name, *actions, **own):
+    return ("step", name, own, actions)
+
+
+def when(condition, comment=""):
+    return ("transition", condition, comment)
+
+
+def jump(target):
+    return ("jump", target)
+
+
+def either(*ways):
+    return ("branch", False, ways)
+
+
+def beside(*ways):
+    return ("branch", True, ways)
+
+
 def identity_of(name):
     return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, name)) + "}"
 
@@ -237,13 +367,19 @@ def pou(name, declaration, view, networks, members=()):
     if view == "ST":
         out.lines.append(f"    <Implementation>\n      <ST><![CDATA[{networks}]]></ST>\n"
                          "    </Implementation>")
+    elif view == "SFC":
+        out.chart(2, networks)
     else:
         out.body(2, view, networks)
     for word, member, text, kind, body in members:
         out.lines.append(f'    <{word} Name="{member}" Id="{identity_of(name + member)}">')
         if text:
             out.lines.append(f"      <Declaration><![CDATA[{text}]]></Declaration>")
-        out.body(3, kind, body)
+        if kind == "ST":
+            out.lines.append(f"      <Implementation>\n        <ST><![CDATA[{body}]]></ST>\n"
+                             "      </Implementation>")
+        else:
+            out.body(3, kind, body)
         out.lines.append(f"    </{word}>")
     out.lines += ["  </POU>", "</TcPlcObject>", ""]
     return "\n".join(out.lines)
@@ -595,6 +731,115 @@ n := n + 1;
 ok := n MOD 5 = 0;
 IF ok THEN opened := fbValve.Open(bForce := n > 20); END_IF
 scaled := F_Scale(n, 3);
+END_PROGRAM
+"""}
+
+
+def action(name, text):
+    return ("Action", name, "", "ST", text)
+
+
+CASES["drawn_chart"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n, fills, stirs, drains, entered, left_ : INT;
+	log : STRING(200);
+END_VAR
+""", "SFC", [
+    step("Init", InitStep=True, MainAction="Count", Comment="waits"),
+    when("n >= 3"),
+    step("Fill", EntryAction="Open", MainAction="Filling", ExitAction="Close"),
+    when("fills >= 4", "full"),
+    # Stays for 30 ms at least, whatever its transition says.
+    step("Rest", MinTime="T#30ms", MaxTime="T#1s"),
+    when("Rested"),
+    step("Drain", ("Draining", "N")),
+    when("drains >= 2"),
+    jump("Init"),
+], members=[action("Close", "left_ := left_ + 1;\nlog := CONCAT(log, 'c');"),
+            action("Count", "n := n + 1;"), action("Draining", "drains := drains + 1;\nlog := CONCAT(log, 'd');"),
+            action("Filling", "fills := fills + 1;\nlog := CONCAT(log, 'f');"),
+            action("Open", "entered := entered + 1;\nlog := CONCAT(log, 'o');"),
+            ("Transition", "Rested", "", "ST", "Rested := n > 0 AND fills > 0;")]), "twin": """PROGRAM MAIN
+VAR
+  n, fills, stirs, drains, entered, left_ : INT;
+  log : STRING(200);
+  at_, since : INT;
+END_VAR
+// One scan is 10 ms. at_: 0 Init, 1 Fill, 2 Rest, 3 Drain; a chart tries its transitions first.
+IF since > 0 THEN
+  IF at_ = 0 AND n >= 3 THEN
+    at_ := 1; since := 0; entered := entered + 1; log := CONCAT(log, 'o');
+  ELSIF at_ = 1 AND fills >= 4 THEN
+    at_ := 2; since := 0; left_ := left_ + 1; log := CONCAT(log, 'c');
+  ELSIF at_ = 2 AND n > 0 AND fills > 0 AND since >= 3 THEN
+    at_ := 3; since := 0;
+  ELSIF at_ = 3 AND drains >= 2 THEN
+    at_ := 0; since := 0;
+    drains := drains + 1; log := CONCAT(log, 'd');  // an IEC action has its final scan
+  END_IF
+END_IF
+since := since + 1;
+CASE at_ OF
+  0: n := n + 1;
+  1: fills := fills + 1; log := CONCAT(log, 'f');
+  3: drains := drains + 1; log := CONCAT(log, 'd');
+END_CASE
+END_PROGRAM
+"""}
+
+CASES["drawn_chart_branches"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
+VAR
+	n, left_, rights, short_, long_, boths, laps : INT;
+END_VAR
+""", "SFC", [
+    step("Start", InitStep=True, EntryAction="Lap"),
+    either([when("laps MOD 2 = 0"), step("Short", EntryAction="CountShort"), when("TRUE")],
+           [when("laps MOD 3 = 0"), step("Long", EntryAction="CountLong"), when("TRUE"),
+            step("Longer"), when("TRUE")],
+           [when("laps = 1"), jump("Start")],
+           [when("TRUE")]),
+    beside([step("Left", MainAction="CountLeft"), when("left_ MOD 3 = 0"), step("LeftDone")],
+           [step("Right", EntryAction="CountRight")]),
+    when("rights > 0"),
+    step("Both", EntryAction="CountBoth"),
+    when("TRUE"),
+    jump("Start"),
+], members=[action("CountBoth", "boths := boths + 1;"), action("CountLeft", "left_ := left_ + 1;"),
+            action("CountLong", "long_ := long_ + 1;"), action("CountRight", "rights := rights + 1;"),
+            action("CountShort", "short_ := short_ + 1;"), action("Lap", "laps := laps + 1;")]),
+    "twin": """PROGRAM MAIN
+VAR
+  n, left_, rights, short_, long_, boths, laps : INT;
+  at_ : INT := -1;
+  new_ : INT;
+  l_done : BOOL;
+END_VAR
+// at_: 0 Start, 1 Short, 2 Long, 3 Longer, 4 Left and Right, 5 LeftDone and Right, 6 Both
+new_ := at_;
+CASE at_ OF
+  -1: new_ := 0;
+  0:
+    IF laps MOD 2 = 0 THEN new_ := 1;
+    ELSIF laps MOD 3 = 0 THEN new_ := 2;
+    ELSIF laps = 1 THEN new_ := 10;
+    ELSE new_ := 4;
+    END_IF
+  1: new_ := 4;
+  2: new_ := 3;
+  3: new_ := 4;
+  4: IF left_ MOD 3 = 0 THEN new_ := 5; END_IF
+  5: IF rights > 0 THEN new_ := 6; END_IF
+  6: new_ := 0;
+END_CASE
+IF new_ <> at_ THEN
+  IF new_ = 0 OR new_ = 10 THEN laps := laps + 1; END_IF
+  IF new_ = 1 THEN short_ := short_ + 1; END_IF
+  IF new_ = 2 THEN long_ := long_ + 1; END_IF
+  IF new_ = 4 THEN rights := rights + 1; END_IF
+  IF new_ = 6 THEN boths := boths + 1; END_IF
+END_IF
+at_ := SEL(new_ = 10, new_, 0);
+IF at_ = 4 THEN left_ := left_ + 1; END_IF
 END_PROGRAM
 """}
 
