@@ -389,7 +389,7 @@ CASES = {}
 
 CASES["drawn_logic"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
 VAR
-	n, m, big, half : INT;
+	n, m, big, half, prod : INT;
 	w : WORD := 16#0FF0;
 	bits, mixed : WORD;
 	a, b, both, either, none, odd, copy, more : BOOL;
@@ -409,9 +409,12 @@ END_VAR
     [box("MOVE", var("a"), val("n"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
          outputs=(None, var("big", "INT")), en=True, call="Move")],
     [to(var("half", "INT"), box("DIV", val("n"), val("2")))],
+    # The second output leads on; nothing is written while EN is FALSE.
+    [to(var("prod", "INT"), box("MUL", var("a"), val("n"), val("2"), names=("EN",), out_names=("ENO", ""),
+                                out_types=("BOOL", "INT"), outputs=("", None), en=True, call="Mul"))],
 ]), "twin": """PROGRAM MAIN
 VAR
-  n, m, big, half : INT;
+  n, m, big, half, prod : INT;
   w : WORD := 16#0FF0;
   bits, mixed : WORD;
   a, b, both, either, none, odd, copy, more : BOOL;
@@ -430,6 +433,7 @@ bits := w AND 16#00FF;
 mixed := bits OR SHL(w, n);
 IF a THEN big := n; END_IF
 half := n / 2;
+IF a THEN prod := n * 2; END_IF
 END_PROGRAM
 """}
 
@@ -439,8 +443,9 @@ VAR
 	ctuRuns : CTU;
 	trig : R_TRIG;
 	pulse : TP;
+	tonLate : TON;
 	go, done, full, rose, lit, two : BOOL;
-	t : TIME;
+	t, late : TIME;
 	n, k : INT;
 END_VAR
 """, "Fbd", [
@@ -457,6 +462,8 @@ END_VAR
     [fb("R_TRIG", "trig", {"CLK": var("done", flags=NEGATED)}, {"Q": "rose"})],
     [fb("TP", "pulse", {"IN": var("go", flags=RISING), "PT": val("T#20ms", "TIME")},
         {"Q": var("lit", flags=NEGATED), "ET": ""}, ("BOOL", "TIME"))],
+    [to(var("late", "TIME"), fb("TON", "tonLate", {"IN": var("go"), "PT": val("T#1s", "TIME")},
+                                {"Q": "", "ET": None}, ("BOOL", "TIME")))],
     [to("two", box("AND", var("go", flags=FALLING), var("n", "INT") and val("n > 10", "BOOL")))],
 ]), "twin": """PROGRAM MAIN
 VAR
@@ -464,8 +471,9 @@ VAR
   ctuRuns : CTU;
   trig : R_TRIG;
   pulse : TP;
+  tonLate : TON;
   go, done, full, rose, lit, two : BOOL;
-  t : TIME;
+  t, late : TIME;
   n, k : INT;
   goRose : R_TRIG; goFell : F_TRIG;
 END_VAR
@@ -479,6 +487,7 @@ trig(CLK := NOT done, Q => rose);
 goRose(CLK := go);
 pulse(IN := goRose.Q, PT := T#20ms);
 lit := NOT pulse.Q;
+tonLate(IN := go, PT := T#1s, ET => late);
 goFell(CLK := go);
 two := goFell.Q AND n > 10;
 END_PROGRAM
