@@ -1,5 +1,5 @@
-// Everything that a change does beside values and code (X1): what the two images say, and outputs
-// that code has left (vm/load/left_outputs.h).
+// Everything that a change does beside values and code (X1): what the two images say, outputs
+// that code has left (vm/load/left_outputs.h), and which unit of an edit a POU is part of.
 #pragma once
 
 #include "tools/common/fate_report.h"
