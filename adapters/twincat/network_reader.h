@@ -68,7 +68,7 @@ class NetworkReader {
   bool failed_ = false;
   size_t links_ = 0;
   network::Network out_;
-  std::map<std::string, std::vector<Link>> wires_;  // by VarId
+  std::map<std::string, Wire> wires_;  // by VarId
 };
 
 }  // namespace twincat

@@ -89,20 +89,11 @@ Wire NetworkReader::demux(const Item& item) {
   const std::string number = member_text(item.node, "VarId");
   if (const Item input = object_member(item.node, "Input")) {
     Wire wire = ladder_ && carries_power(input) ? Wire{power(input, {rail()})} : value(input);
-    if (wire.modifier != Modifier::kNone) {  // of all that it goes to
-      Element block;
-      block.kind = Kind::kBlock;
-      block.type.text = "OR";
-      block.inputs.resize(1);
-      block.outputs.resize(1);
-      connect(block.inputs[0], std::move(wire), item.node);
-      wire = {{{push(std::move(block)), 0}}};
-    }
-    wires_[number] = wire.from;
+    wires_[number] = wire;
     return wire;
   }
   const auto known = wires_.find(number);
-  if (known != wires_.end()) return {known->second};
+  if (known != wires_.end()) return known->second;
   fail(item.node, "a branch leads from wire " + number + ", which begins nowhere in front of it");
   return {};
 }

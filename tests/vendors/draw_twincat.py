@@ -525,7 +525,7 @@ END_PROGRAM
 CASES["drawn_branches"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
 VAR
 	n : INT;
-	hot, cold, latched, alarm, both, never : BOOL;
+	hot, cold, latched, alarm, both, never, calm, rest, mild, rose, rose2 : BOOL;
 END_VAR
 """, "Fbd", [
     [to(var("n", "INT"), box("MOD", box("ADD", val("n"), val("3")), val("10")))],
@@ -535,11 +535,16 @@ END_VAR
      to(var("alarm", flags=NEGATED), wire(1))],
     [to("cold", box("LT", val("n"), val("2")))],
     [to(var("latched", flags=RESET), var("cold"))],
+    # What begins a wire is negated, or sees an edge: so is all that it goes to.
+    [wire(3, var("hot", flags=NEGATED)), to("calm", wire(3)), to("rest", box("AND", wire(3), var("latched")))],
+    [wire(4, box("OR", var("hot"), var("cold"), flags=NEGATED)), to("mild", wire(4))],
+    [wire(5, var("hot", flags=RISING)), to("rose", wire(5)), to("rose2", wire(5))],
     [to("both", wire(2, box("OR", var("hot"), var("cold")))), to("never", box("AND", wire(2), val("FALSE", "BOOL")))],
 ]), "twin": """PROGRAM MAIN
 VAR
   n : INT;
-  hot, cold, latched, alarm, both, never : BOOL;
+  hot, cold, latched, alarm, both, never, calm, rest, mild, rose, rose2 : BOOL;
+  trig : R_TRIG;
 END_VAR
 n := (n + 3) MOD 10;
 hot := n > 6;
@@ -547,6 +552,12 @@ IF hot AND n < 9 THEN latched := TRUE; END_IF
 alarm := NOT hot;
 cold := n < 2;
 IF cold THEN latched := FALSE; END_IF
+calm := NOT hot;
+rest := NOT hot AND latched;
+mild := NOT (hot OR cold);
+trig(CLK := hot);
+rose := trig.Q;
+rose2 := trig.Q;
 both := hot OR cold;
 never := FALSE;
 END_PROGRAM
