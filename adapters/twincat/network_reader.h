@@ -47,6 +47,7 @@ class NetworkReader {
 
   Wire value(const Item& item);
   Wire demux(const Item& item);
+  Wire read_once(Wire wire, Node at);
   Wire assign(const Item& item);
   Wire box(const Item& item);
   void box_inputs(const Item& item, network::Element& block);

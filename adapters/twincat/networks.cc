@@ -15,6 +15,18 @@ using base::same_name;
 using network::Element;
 using xml::Code;
 
+// A number, a text, TRUE, INT#5: nothing that could change.
+bool is_literal(std::string_view operand) {
+  if (operand.empty() || same_name(operand, "TRUE") || same_name(operand, "FALSE")) return true;
+  const char quote = operand[0];
+  if (quote == '\'' || quote == '"') return operand.find(quote, 1) == operand.size() - 1;
+  const bool one = std::all_of(operand.begin(), operand.end(), [](char c) {
+    return c == '#' || c == '.' || c == ':' || xml::is_name("_" + std::string(1, c));
+  });
+  const bool digit = operand[0] >= '0' && operand[0] <= '9';
+  return one && (digit || operand.find('#') != std::string_view::npos);
+}
+
 Modifier storage_of(uint32_t flags) {
   if ((flags & kSet) != 0) return (flags & kNegation) != 0 ? Modifier::kReset : Modifier::kSet;
   return modifier_of(flags);
@@ -84,11 +96,27 @@ Wire NetworkReader::value(const Item& item) {
   return {};
 }
 
+// As text, a variable is read where its value is used: behind a box it is read here, once, however
+// often it is used, and whatever is written meanwhile.
+Wire NetworkReader::read_once(Wire wire, Node at) {
+  if (wire.from.size() != 1) return wire;
+  const Element& source = out_.elements[wire.from[0].element];
+  if (source.kind != Kind::kSource || is_literal(source.operand.text)) return wire;
+  Element block;
+  block.kind = Kind::kBlock;
+  block.type.text = "MOVE";
+  block.inputs.resize(1);
+  block.outputs.resize(1);
+  connect(block.inputs[0], {wire.from}, at);
+  return {{{push(std::move(block)), 0}}, wire.modifier};
+}
+
 // A wire that branches: one says what it carries, the others have its number.
 Wire NetworkReader::demux(const Item& item) {
   const std::string number = member_text(item.node, "VarId");
   if (const Item input = object_member(item.node, "Input")) {
     Wire wire = ladder_ && carries_power(input) ? Wire{power(input, {rail()})} : value(input);
+    wire = read_once(std::move(wire), item.node);
     wires_[number] = wire;
     return wire;
   }
@@ -218,7 +246,8 @@ Wire NetworkReader::assign(const Item& item) {
     return is_bool(member_text(target.node, "Type"));
   });
   const bool is_power = ladder_ && bools && carries_power(from);
-  const Wire wire = is_power ? Wire{power(from, {rail()})} : value(from);
+  Wire wire = is_power ? Wire{power(from, {rail()})} : value(from);
+  if (targets.size() > 1) wire = read_once(std::move(wire), item.node);
   if (wire.from.empty() && !failed_) {
     report_.add(Code::kXmlLeftOut, item.node, "nothing is connected to a coil or output");
     return {};

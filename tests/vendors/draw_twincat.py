@@ -525,7 +525,7 @@ END_PROGRAM
 CASES["drawn_branches"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
 VAR
 	n : INT;
-	hot, cold, latched, alarm, both, never, calm, rest, mild, rose, rose2 : BOOL;
+	hot, cold, latched, alarm, both, never, calm, rest, mild, rose, rose2, flip, flop, turn, was : BOOL;
 END_VAR
 """, "Fbd", [
     [to(var("n", "INT"), box("MOD", box("ADD", val("n"), val("3")), val("10")))],
@@ -538,12 +538,15 @@ END_VAR
     # What begins a wire is negated, or sees an edge: so is all that it goes to.
     [wire(3, var("hot", flags=NEGATED)), to("calm", wire(3)), to("rest", box("AND", wire(3), var("latched")))],
     [wire(4, box("OR", var("hot"), var("cold"), flags=NEGATED)), to("mild", wire(4))],
+    # Read once, although what is written first is the variable itself.
+    [to(["flip", "flop"], var("flip", flags=NEGATED))],
+    [wire(6, var("turn")), to(var("turn", flags=NEGATED), wire(6)), to("was", wire(6))],
     [wire(5, var("hot", flags=RISING)), to("rose", wire(5)), to("rose2", wire(5))],
     [to("both", wire(2, box("OR", var("hot"), var("cold")))), to("never", box("AND", wire(2), val("FALSE", "BOOL")))],
 ]), "twin": """PROGRAM MAIN
 VAR
   n : INT;
-  hot, cold, latched, alarm, both, never, calm, rest, mild, rose, rose2 : BOOL;
+  hot, cold, latched, alarm, both, never, calm, rest, mild, rose, rose2, flip, flop, turn, was : BOOL;
   trig : R_TRIG;
 END_VAR
 n := (n + 3) MOD 10;
@@ -555,6 +558,10 @@ IF cold THEN latched := FALSE; END_IF
 calm := NOT hot;
 rest := NOT hot AND latched;
 mild := NOT (hot OR cold);
+flip := NOT flip;
+flop := flip;
+was := turn;
+turn := NOT turn;
 trig(CLK := hot);
 rose := trig.Q;
 rose2 := trig.Q;
@@ -874,4 +881,5 @@ def main(folder):
                 out.write(text)
 
 
-main(sys.argv[1])
+if __name__ == "__main__":
+    main(sys.argv[1])
