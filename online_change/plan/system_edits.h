@@ -11,7 +11,8 @@
 namespace online_change {
 
 struct SystemEdit {
-  std::string kind;  // "variable", "resource", "task", "program", "output", "device", "chart", "unit"
+  // "variable", "resource", "task", "program", "output", "device", "chart", "unit"
+  std::string kind;
   std::string name;
   std::string what;  // "T#10ms -> T#20ms", "new", "removed", "%QX0.0 -> %QX7.7"
 };
