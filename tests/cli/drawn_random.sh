@@ -1,25 +1,36 @@
 #!/bin/sh
-# Random ladders and function block diagrams as TwinCAT stores them do what the same trees mean in ST
-# (tests/vendors/random_twincat.py). drawn_random.sh SOURCES BUILD [FIRST COUNT]
+# Random ladders, function block diagrams and charts as TwinCAT stores them do what the same trees and
+# graphs mean in ST (tests/vendors/random_twincat.py, random_charts.py).
+# drawn_random.sh SOURCES BUILD [FIRST COUNT]
 . "$(dirname "$0")/lib.sh"
 first=${3:-1}
 count=${4:-8}
 
-state() { expect 0 stvm run "$1" --dialect twincat --virtual-time --scans 128 --name p --print MAIN.all --print MAIN.sum; }
-for view in Ld Fbd; do
-  seed=$first
-  while [ "$seed" -lt $((first + count)) ]; do
+state() {  # state FOLDER SCANS: what the program has summed up
+  expect 0 stvm run "$1" --dialect twincat --virtual-time --scans "$2" --name p --print MAIN.sum --print MAIN.n $all
+}
+compare() {  # compare WHAT SCANS
+  if ! "$bin/stvm" run made/drawn --dialect twincat --virtual-time --scans 1 >out 2>err &&
+    grep -q 'built without pugixml' err; then
+    echo "built without pugixml: no objects of TwinCAT"
+    exit 0
+  fi
+  state made/text "$2"
+  cp out text
+  state made/drawn "$2"
+  cmp -s text out || fail "seed $seed, $1: $(paste text out | tr '\n' ' ')"
+  rm -rf made
+}
+seed=$first
+while [ "$seed" -lt $((first + count)) ]; do
+  all='--print MAIN.all'
+  for view in Ld Fbd; do
     python3 "$source_dir/tests/vendors/random_twincat.py" "$seed" $view made || fail "no program of seed $seed"
-    if ! "$bin/stvm" run made/drawn --dialect twincat --virtual-time --scans 1 >out 2>err &&
-      grep -q 'built without pugixml' err; then
-      echo "built without pugixml: no objects of TwinCAT"
-      exit 0
-    fi
-    state made/text
-    cp out text
-    state made/drawn
+    compare $view 128
     grep -q '^MAIN.all=[1-9]' out || fail "seed $seed, $view: nothing happens"
-    cmp -s text out || fail "seed $seed, $view: $(paste text out | tr '\n' ' ')"
-    seed=$((seed + 1))
   done
+  all=
+  python3 "$source_dir/tests/vendors/random_charts.py" "$seed" made || fail "no chart of seed $seed"
+  compare chart 60
+  seed=$((seed + 1))
 done
