@@ -291,6 +291,11 @@ std::string Chart::text() {
 }
 
 std::string chart_text(Node sfc, Node pou, Reporter& report) {
+  if (const std::string conflict = own_actions(pou).conflict(); !conflict.empty()) {
+    report.add(Code::kXmlBody, sfc, "the chart: " + conflict,
+               "give each of them an action of its own");
+    return error_text("the chart was not imported");
+  }
   Chart chart(sfc, pou, report);
   const std::string text = chart.text();
   keep_chart(sfc, pou, text, std::move(chart.made_actions), report);

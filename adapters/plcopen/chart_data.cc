@@ -21,6 +21,12 @@ xml::OwnActions own_actions(Node pou) {
   for (Node body : xml::children(pou, "body")) {
     for (Node chart : xml::children(body, "SFC")) {
       for (Node step : xml::children(chart, "step")) out.add(chart_attributes(step, nullptr));
+      for (Node block : xml::children(chart, "actionBlock")) {
+        for (Node action : xml::children(block, "action")) {
+          const std::string_view name = xml::attribute(xml::child(action, "reference"), "name");
+          if (!name.empty()) out.add_usual(name);
+        }
+      }
     }
   }
   return out;

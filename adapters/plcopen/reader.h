@@ -8,10 +8,13 @@
 
 #include "adapters/xml/chart_attributes.h"
 #include "adapters/xml/document.h"
+#include "adapters/xml/operand.h"
 
 namespace plcopen {
 
 using xml::Code;
+using xml::is_operand;
+using xml::is_plain_operand;
 using xml::Node;
 using xml::Reporter;
 
@@ -77,12 +80,6 @@ std::string condition_text(Node body, const std::string& name, Reporter& report)
 std::string action_use(Node action, const std::string& name, Reporter& report);
 // negated="true", of a condition or action block.
 bool is_negated(Node node, Reporter& report);
-
-// --- operand.cc
-// Is `text` one expression, without comments, pragmas, statements or open brackets? It can stand
-// between other text then and change nothing of that.
-bool is_operand(std::string_view text);
-bool is_plain_operand(std::string_view text);  // the same without calls and brackets
 
 // --- chart.cc
 std::string chart_text(Node sfc, Node pou, Reporter& report);

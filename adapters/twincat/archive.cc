@@ -1,6 +1,8 @@
 #include "adapters/twincat/archive.h"
 
 #include <charconv>
+#include <set>
+#include <system_error>
 
 namespace twincat {
 namespace {
@@ -15,8 +17,20 @@ std::string unquoted(std::string text) {
 }  // namespace
 
 xml::Node find_object(xml::Node archive, std::string_view type) {
-  return archive.find_node(
-      [type](xml::Node node) { return xml::is(node, "o") && xml::attribute(node, "t") == type; });
+  struct Finder : pugi::xml_tree_walker {
+    bool for_each(xml::Node& node) override {
+      if (!xml::is(node, "o") || xml::attribute(node, "t") != type) return true;
+      ++count;
+      found = node;
+      return count < 2;
+    }
+    std::string_view type;
+    xml::Node found;
+    int count = 0;
+  } finder;
+  finder.type = type;
+  archive.traverse(finder);
+  return finder.count == 1 ? finder.found : xml::Node();
 }
 
 xml::Node member(xml::Node object, std::string_view name) {
@@ -29,7 +43,9 @@ xml::Node member(xml::Node object, std::string_view name) {
 
 Item object_member(xml::Node object, std::string_view name) {
   const xml::Node node = member(object, name);
-  return {node, xml::is(node, "o") ? xml::attribute(node, "t") : std::string_view()};
+  const std::string_view type = xml::attribute(node, "t");
+  if (!node) return {};
+  return {node, xml::is(node, "o") && !type.empty() ? type : "?"};
 }
 
 std::string member_text(xml::Node object, std::string_view name) {
@@ -62,10 +78,38 @@ std::vector<std::string> texts(xml::Node object, std::string_view list) {
 }
 
 uint32_t flags_of(xml::Node object) {
-  const std::string text = member_text(member(object, "Flags"), "Flags");
+  const xml::Node flags = member(object, "Flags");
+  if (!flags) return 0;
+  const std::string text = member_text(flags, "Flags");
   uint32_t bits = 0;
-  std::from_chars(text.data(), text.data() + text.size(), bits);
-  return bits;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bits);
+  return error == std::errc() && end == text.data() + text.size() ? bits : kUnreadable;
+}
+
+ArchiveProblem archive_problem(xml::Node object) {
+  struct Walker : pugi::xml_tree_walker {
+    bool for_each(xml::Node& node) override {
+      const bool list = xml::is(node, "l2");
+      if (!list && !xml::is(node, "o")) return true;
+      std::set<std::string_view> names;
+      for (xml::Node below : xml::children(node)) {
+        const std::string_view name = xml::attribute(below, "n");
+        const bool text = xml::is(below, "v");
+        if (list && (xml::is(below, "o") || xml::is(below, "n") ||
+                     (text && xml::attribute(node, "cet") == "String"))) {
+          continue;
+        }
+        if (!list && !name.empty() && names.insert(name).second) continue;
+        problem = {below, list ? "a list holds what is no object"
+                               : "a member has no name, or that of another one"};
+        return false;
+      }
+      return true;
+    }
+    ArchiveProblem problem;
+  } walker;
+  object.traverse(walker);
+  return walker.problem;
 }
 
 }  // namespace twincat

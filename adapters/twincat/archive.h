@@ -14,11 +14,11 @@ namespace twincat {
 
 struct Item {
   xml::Node node;
-  std::string_view type;  // empty: none, <n>
+  std::string_view type;  // empty: none, <n>; "?": it says none, or is no object
   explicit operator bool() const { return !type.empty(); }
 };
 
-// Of `type`, anywhere below; empty: there is none.
+// The only one of `type`, anywhere below; empty: there is none, or there are several.
 xml::Node find_object(xml::Node archive, std::string_view type);
 xml::Node member(xml::Node object, std::string_view name);  // empty: none
 Item object_member(xml::Node object, std::string_view name);
@@ -36,6 +36,16 @@ enum Flag : uint32_t {
   kRising = 16,
   kFalling = 32,
 };
+// kUnreadable: no number, or a larger one.
+inline constexpr uint32_t kUnreadable = ~0u;
 uint32_t flags_of(xml::Node object);
+
+// What of the objects below has no meaning: two members of one name, a list of other things than
+// objects and texts. Empty: nothing.
+struct ArchiveProblem {
+  xml::Node node;
+  std::string text;
+};
+ArchiveProblem archive_problem(xml::Node object);
 
 }  // namespace twincat

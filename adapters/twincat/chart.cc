@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adapters/twincat/archive.h"
+#include "adapters/xml/operand.h"
 #include "base/limits.h"
 #include "base/name_case.h"
 
@@ -57,7 +58,8 @@ class ChartReader {
   End step(Node node, End at);
   End transition(Node node, const End& at);
   End branch(Node node, const End& at);
-  void enter(const End& from, const std::string& step);
+  bool count(Node at, size_t links);
+  void enter(Node at, const End& from, const std::string& step);
   std::string condition(const ChartAttributes& attributes, Node node);
   void flags(Node object);
 
@@ -76,9 +78,19 @@ void ChartReader::fail(Code code, Node at, const std::string& text, const std::s
   failed_ = true;
 }
 
-void ChartReader::enter(const End& from, const std::string& step) {
-  links_ += from.transitions.size();
-  if (links_ > base::kMaxLinks) return;
+// False, after a report: transitions leave and enter too many steps.
+bool ChartReader::count(Node at, size_t links) {
+  links_ += links;
+  if (links_ <= base::kMaxLinks) return true;
+  if (!failed_) {
+    fail(Code::kXmlLimit, at,
+         "its transitions leave and enter more than " + std::to_string(base::kMaxLinks) + " steps");
+  }
+  return false;
+}
+
+void ChartReader::enter(Node at, const End& from, const std::string& step) {
+  if (!count(at, from.transitions.size())) return;
   for (const size_t number : from.transitions) transitions_[number].to.push_back(step);
 }
 
@@ -110,18 +122,28 @@ End ChartReader::step(Node node, End at) {
            "an action of step `" + name + "` has no name or no qualifier");
       continue;
     }
-    const size_t end = qualifier.find_first_of(" ,");
-    steps_ += kRowIndent + of_action[ChartAttribute::kName] + "(" + qualifier.substr(0, end);
-    if (end != std::string::npos) {
-      steps_ += ", " + std::string(xml::trimmed(qualifier.substr(end + 1)));
+    const size_t end = std::min(qualifier.find_first_of(" ,"), qualifier.size());
+    const std::string time(
+        xml::trimmed(std::string_view(qualifier).substr(std::min(end + 1, qualifier.size()))));
+    const bool excluded = of_action.is_true(ChartAttribute::kExclude);
+    if (excluded || !xml::is_name(qualifier.substr(0, end)) ||
+        (!time.empty() && !xml::is_plain_operand(time))) {
+      fail(Code::kXmlBody, item.node,
+           "an action of step `" + name + "` has the qualifier `" + qualifier +
+               (excluded ? "` and is excluded from the build" : "`, which is not known here"));
     }
-    steps_ += ");\n";
+    steps_ += kRowIndent + of_action[ChartAttribute::kName] + "(" + qualifier.substr(0, end) +
+              (time.empty() ? "" : ", " + time) + ");\n";
   }
   steps_ += "END_STEP\n";
   if (const std::string time = attributes[ChartAttribute::kLeastTime]; !time.empty()) {
+    if (!xml::is_plain_operand(time)) {
+      fail(Code::kXmlBadValue, node,
+           "the shortest time `" + time + "` of a step is neither time nor variable");
+    }
     least_times_[name] = time;
   }
-  enter(at, name);
+  enter(node, at, name);
   return {{name}, {}};
 }
 
@@ -139,13 +161,15 @@ std::string ChartReader::condition(const ChartAttributes& attributes, Node node)
     }
     while (!text.empty() && (text.back() == ';' || text.back() == ' ')) text.pop_back();
     text = xml::trimmed(text);
-    if (!text.empty() && text.find(';') == std::string::npos) return text;
+    if (xml::is_operand(text)) return text;
     fail(Code::kXmlBody, named, "transition `" + name + "` is no single expression in ST",
          "write it as one");
     return {};
   }
   if (name.empty()) {
     fail(Code::kXmlBody, node, "a transition has no condition");
+  } else if (!xml::is_operand(name)) {
+    fail(Code::kXmlBody, node, "the condition `" + name + "` is no expression");
   }
   return name;
 }
@@ -165,6 +189,7 @@ End ChartReader::transition(Node node, const End& at) {
     fail(Code::kXmlBody, node, "a transition that is excluded from the build does not come in",
          "take it out of the chart");
   }
+  if (!count(node, at.steps.size())) return {};
   Transition out;
   out.from = at.steps;
   out.condition = condition(attributes, node);
@@ -176,7 +201,12 @@ End ChartReader::transition(Node node, const End& at) {
 // Ways that exclude each other begin and end with a transition; those that run beside each other
 // begin and end with a step.
 End ChartReader::branch(Node node, const End& at) {
-  const bool parallel = attributes_of(node, &report_).is_true(ChartAttribute::kParallel);
+  const ChartAttributes attributes = attributes_of(node, &report_);
+  const bool parallel = attributes.is_true(ChartAttribute::kParallel);
+  if (attributes.is_true(ChartAttribute::kExclude) || items(node, "Segments").empty()) {
+    fail(Code::kXmlBody, node, "branches that have no ways, or are excluded, do not come in");
+    return {};
+  }
   if (parallel ? at.transitions.empty() : at.steps.empty()) {
     fail(Code::kBadXmlChart, node,
          parallel ? "parallel branches stand behind a step" : "branches stand behind a transition");
@@ -200,12 +230,16 @@ End ChartReader::list(Node segment, End at) {
   for (const Item& item : elements_of(segment)) {
     if (failed_) return {};
     if (item.type == "SFCJump") {
-      const std::string target = attributes_of(item.node, &report_)[ChartAttribute::kName];
+      const ChartAttributes attributes = attributes_of(item.node, &report_);
+      const std::string target = attributes[ChartAttribute::kName];
+      if (attributes.is_true(ChartAttribute::kExclude)) {
+        fail(Code::kXmlBody, item.node, "a jump that is excluded from the build does not come in");
+      }
       if (at.transitions.empty() || !xml::is_name(target)) {
         fail(Code::kBadXmlChart, item.node,
              "a jump to `" + target + "` stands behind no transition");
       }
-      enter(at, target);
+      enter(item.node, at, target);
       at = {};
     } else if (item.type == "SFCStep") {
       at = step(item.node, std::move(at));
@@ -238,10 +272,6 @@ std::string ChartReader::run(Node root) {
   if (!failed_ && !end.transitions.empty()) {
     fail(Code::kBadXmlChart, root, "it ends with a transition", "draw a step or a jump behind it");
   }
-  if (links_ > base::kMaxLinks) {
-    fail(Code::kXmlLimit, root,
-         "its transitions enter more than " + std::to_string(base::kMaxLinks) + " steps");
-  }
   flags(object_);
   std::string out = steps_;
   const auto names = [](const std::vector<std::string>& steps) {
@@ -265,7 +295,12 @@ std::string ChartReader::run(Node root) {
 
 void add_own(Node segment, xml::OwnActions& out) {
   for (const Item& item : elements_of(segment)) {
-    if (item.type == "SFCStep") out.add(attributes_of(item.node, nullptr));
+    if (item.type == "SFCStep") {
+      out.add(attributes_of(item.node, nullptr));
+      for (const Item& action : elements_of(item.node)) {
+        out.add_usual(attributes_of(action.node, nullptr)[ChartAttribute::kName]);
+      }
+    }
     for (const Item& way : items(item.node, "Segments")) add_own(way.node, out);
   }
 }
@@ -273,7 +308,16 @@ void add_own(Node segment, xml::OwnActions& out) {
 }  // namespace
 
 std::string chart_text(Node sfc, Node object, const std::string& what, xml::Reporter& report) {
+  if (const ArchiveProblem problem = archive_problem(sfc); problem.node) {
+    report.add(Code::kXmlBody, problem.node, "the chart of " + what + ": " + problem.text);
+    return {};
+  }
   const Node root = member(find_object(sfc, "SFCImplementationObject"), "Root");
+  if (const std::string conflict = own_actions(sfc).conflict(); !conflict.empty()) {
+    report.add(Code::kXmlBody, sfc, "the chart of " + what + ": " + conflict,
+               "give each of them an action of its own");
+    return {};
+  }
   if (!root) {
     report.add(Code::kXmlBody, sfc, "the body of " + what + " holds no chart");
     return {};

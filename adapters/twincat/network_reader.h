@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ using network::Kind;
 using network::Link;
 using network::Modifier;
 using xml::Node;
+
+// The output of a box that leads on: the one without an entry. nullopt: it cannot be told.
+std::optional<uint32_t> leading_output(Node box);
 
 // What arrives at a pin. No links: nothing does.
 struct Wire {
@@ -41,29 +45,36 @@ class NetworkReader {
 
  private:
   void fail(Node at, const std::string& text, const std::string& fix = {});
+  uint32_t marks(Node owner, uint32_t known, const char* what);
+  network::Text operand(Node owner, const char* what);
   uint32_t push(network::Element element);
-  Link rail() { return {0, 0}; }
   void connect(network::Input& input, Wire wire, Node at);
 
   Wire value(const Item& item);
   Wire demux(const Item& item);
   Wire read_once(Wire wire, Node at);
-  Wire assign(const Item& item);
-  Wire box(const Item& item);
-  void box_inputs(const Item& item, network::Element& block);
-  uint32_t box_outputs(const Item& item, uint32_t block);
+  Wire assign(const Item& item, bool leads_on);
   void end(Node target, uint32_t flags, const Wire& wire, bool power);
+
+  // --- networks_box.cc
+  Wire box(const Item& item, bool leads_on);
+  void box_inputs(const Item& item, network::Element& block);
+  Modifier pin_mark(const Item& box, const std::vector<Item>& marks, size_t pin, bool connected);
+  void box_outputs(const Item& item, uint32_t block);
   std::string name_of(Node box) const;
 
   // --- ladder: what power goes through
   bool is_logic(const Item& item) const;
   bool carries_power(const Item& item) const;
+  Wire powered(const Item& item) { return {power(item, feed_)}; }
   std::vector<Link> power(const Item& item, std::vector<Link> from);
+  void check_parallel(const Item& item, const std::vector<Item>& trees);
   std::vector<Link> branches(const std::vector<Item>& trees, const std::vector<Link>& from);
   std::vector<Link> contact(const Item& item, std::vector<Link> from);
   std::vector<Link> both(std::vector<Link> from, Wire wire, Node at);
 
   bool ladder_;
+  std::vector<Link> feed_ = {{0, 0}};  // the rail, or what feeds the branches that are read
   const std::string& what_;
   xml::Reporter& report_;
   bool failed_ = false;

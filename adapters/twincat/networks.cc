@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adapters/twincat/network_reader.h"
+#include "adapters/xml/operand.h"
 #include "base/limits.h"
 #include "frontend/network/head.h"
 
@@ -41,8 +42,13 @@ Modifier modifier_of(uint32_t flags) {
 }
 
 void NetworkReader::fail(Node at, const std::string& text, const std::string& fix) {
-  if (!failed_) report_.add(Code::kXmlBody, at, "the body of " + what_ + ": " + text, fix);
+  if (failed_) return;
   failed_ = true;
+  if (out_.disabled) {  // nothing of it would be executed
+    report_.add(Code::kXmlLeftOut, at, "a network that is commented out does not come in: " + text);
+  } else {
+    report_.add(Code::kXmlBody, at, "the body of " + what_ + ": " + text, fix);
+  }
 }
 
 uint32_t NetworkReader::push(Element element) {
@@ -66,6 +72,31 @@ void NetworkReader::connect(network::Input& input, Wire wire, Node at) {
   }
 }
 
+// The marks of an item, of which there may be some: an edge stands alone, as nobody says what an
+// edge of a negated value is.
+uint32_t NetworkReader::marks(Node owner, uint32_t known, const char* what) {
+  const uint32_t flags = flags_of(owner);
+  const uint32_t edges = flags & (kRising | kFalling);
+  const uint32_t others = flags & (kNegation | kSet | kJump | kReturn);
+  const bool alone = edges == 0 || ((edges == kRising || edges == kFalling) && others == 0);
+  if ((flags & ~known) == 0 && alone) return flags;
+  fail(owner, std::string(what) + " has the marks " +
+                  (flags == kUnreadable ? "of no number" : std::to_string(flags)) +
+                  ", which are not known here");
+  return 0;
+}
+
+// One expression and nothing else, since it stands between other text.
+network::Text NetworkReader::operand(Node owner, const char* what) {
+  const std::string text = member_text(owner, "Operand");
+  if (text.empty() || text == "???") {
+    fail(owner, std::string(what) + " has no variable", "give its name in TwinCAT");
+  } else if (!xml::is_operand(text)) {
+    fail(owner, std::string(what) + " is `" + text + "`, which is no expression");
+  }
+  return {text, {}};
+}
+
 std::string NetworkReader::name_of(Node box) const {
   const std::string instance = member_text(member(box, "Instance"), "Operand");
   return "`" + (instance.empty() ? member_text(box, "BoxType") : instance) + "`";
@@ -79,19 +110,24 @@ Wire NetworkReader::value(const Item& item) {
     const Node operand = member(item.node, "Operand");
     Element source;
     source.kind = Kind::kSource;
-    source.operand.text = member_text(operand, "Operand");
+    const uint32_t flags = marks(operand, kNegation | kRising | kFalling, "an operand");
+    if (member_text(operand, "Operand").empty()) {
+      if (flags != 0) fail(item.node, "an operand without a variable has marks");
+      return {};
+    }
+    source.operand = this->operand(operand, "an operand");
     source.outputs.resize(1);
-    if (source.operand.empty()) return {};
-    return {{{push(std::move(source)), 0}}, modifier_of(flags_of(operand))};
+    return {{{push(std::move(source)), 0}}, modifier_of(flags)};
   }
-  if (item.type == "BoxTreeBox") return box(item);
-  if (item.type == "BoxTreeAssign") return assign(item);
+  if (item.type == "BoxTreeBox") return box(item, true);
+  if (item.type == "BoxTreeAssign") return assign(item, true);
+  marks(item.node, 0, "a branch or the end of a wire");
   if (item.type == "BoxTreeDemux") return demux(item);
   if (item.type == "BoxTreeTerminator") {
     const Item input = object_member(item.node, "Input");
-    return ladder_ ? Wire{power(item, {rail()})} : value(input);
+    return ladder_ ? powered(item) : value(input);
   }
-  if (item.type == "BoxTreeParallel" && ladder_) return {power(item, {rail()})};
+  if (item.type == "BoxTreeParallel" && ladder_) return powered(item);
   fail(item.node, "an element of type `" + std::string(item.type) + "` is not known here");
   return {};
 }
@@ -115,9 +151,12 @@ Wire NetworkReader::read_once(Wire wire, Node at) {
 Wire NetworkReader::demux(const Item& item) {
   const std::string number = member_text(item.node, "VarId");
   if (const Item input = object_member(item.node, "Input")) {
-    Wire wire = ladder_ && carries_power(input) ? Wire{power(input, {rail()})} : value(input);
+    Wire wire = ladder_ && carries_power(input) ? powered(input) : value(input);
     wire = read_once(std::move(wire), item.node);
-    wires_[number] = wire;
+    if (wire.from.empty()) fail(item.node, "nothing is connected to wire " + number);
+    if (number.empty() || !wires_.emplace(number, wire).second) {
+      fail(item.node, "there are two wires " + number);
+    }
     return wire;
   }
   const auto known = wires_.find(number);
@@ -126,136 +165,65 @@ Wire NetworkReader::demux(const Item& item) {
   return {};
 }
 
-// --- boxes
-
-void NetworkReader::box_inputs(const Item& item, Element& block) {
-  const std::vector<std::string> names = texts(member(item.node, "InputParam"), "Names");
-  const std::vector<Item> pins = items(item.node, "InputItems");
-  const std::vector<Item> marks = items(item.node, "InputFlags");
-  bool powered = false;
-  for (size_t i = 0; i < pins.size() && !failed_; ++i) {
-    const bool may_be_power = ladder_ && carries_power(pins[i]);
-    const bool plain = pins[i].type == "BoxTreeOperand";
-    Wire wire =
-        may_be_power && !(powered && plain) ? Wire{power(pins[i], {rail()})} : value(pins[i]);
-    powered = powered || may_be_power;
-    network::Input input;
-    if (i < names.size()) input.name = names[i];
-    if (wire.from.empty()) {
-      // What is not wired keeps its value; by position that would move those behind it.
-      if (input.name.empty() && !failed_) {
-        fail(item.node, "a pin of the box " + name_of(item.node) + " is not connected",
-             "connect it in TwinCAT");
-      }
-      continue;
-    }
-    if (i < marks.size() && marks[i]) {
-      const Node mark = xml::is(marks[i].node, "o") ? marks[i].node : Node();
-      const std::string bits = member_text(mark, "Flags");
-      if (bits == "1") input.modifier = Modifier::kNegated;
-      if (bits == "16") input.modifier = Modifier::kRising;
-      if (bits == "32") input.modifier = Modifier::kFalling;
-      if (!bits.empty() && bits != "0" && input.modifier == Modifier::kNone) {
-        fail(item.node, "a pin of the box " + name_of(item.node) + " has the marks " + bits +
-                            ", which are not known here");
-      }
-    }
-    connect(input, std::move(wire), item.node);
-    block.inputs.push_back(std::move(input));
-  }
-}
-
-// Writes what outputs go to; gives the output that leads on: the one without an entry.
-uint32_t NetworkReader::box_outputs(const Item& item, uint32_t block) {
-  const std::vector<Item> pins = items(member(item.node, "OutputItems"), "OutputItems");
-  uint32_t leads_on = 0;
-  bool found = false;
-  for (uint32_t i = 0; i < pins.size() && !failed_; ++i) {
-    if (!pins[i]) {
-      if (!found) leads_on = i;
-      found = true;
-      continue;
-    }
-    if (member_text(pins[i].node, "Operand").empty()) continue;
-    end(pins[i].node, flags_of(pins[i].node), {{{block, i}}}, false);
-  }
-  return leads_on;
-}
-
-Wire NetworkReader::box(const Item& item) {
-  Element block;
-  block.kind = Kind::kBlock;
-  block.type.text = member_text(item.node, "BoxType");
-  block.operand.text = member_text(member(item.node, "Instance"), "Operand");
-  const std::string how = member_text(item.node, "CallType");
-  if (is_true(item.node, "ProvidesSTSnippet") || member(item.node, "STSnippet")) {
-    fail(item.node, "a box with statements of its own (EXECUTE) does not come in",
-         "write its statements as an action or a function, and call that");
-  }
-  const bool instance = how == "FunctionBlock" || !block.operand.empty();
-  if (block.type.empty() || (instance && (block.operand.empty() || block.operand.text == "???"))) {
-    fail(item.node, "the box `" + block.type.text + "` calls an instance that has no name",
-         "give its name in TwinCAT");
-  }
-  box_inputs(item, block);
-  const std::vector<std::string> names = texts(member(item.node, "OutputParam"), "Names");
-  const size_t pins = items(member(item.node, "OutputItems"), "OutputItems").size();
-  for (size_t i = 0; i < std::max<size_t>({names.size(), pins, 1}); ++i) {
-    block.outputs.push_back({i < names.size() ? names[i] : std::string(), false});
-  }
-  if (failed_) return {};
-  const uint32_t number = push(std::move(block));
-  const uint32_t output = box_outputs(item, number);
-  return {{{number, output}}, modifier_of(flags_of(item.node))};
-}
-
 // --- coils and other ends
 
 // What a wire does to a variable, or where it jumps to.
 void NetworkReader::end(Node target, uint32_t flags, const Wire& wire, bool power) {
   Element element;
-  element.operand.text = member_text(target, "Operand");
   element.inputs.resize(1);
-  connect(element.inputs[0], wire, target);
-  if ((flags & kJump) != 0) {
-    element.kind = Kind::kJump;
-  } else if ((flags & kReturn) != 0) {
-    element.kind = Kind::kReturn;
-    element.operand = {};
+  const uint32_t flow = flags & (kJump | kReturn);
+  const uint32_t rest = flags & ~flow;
+  if (flow != 0) {
+    if (flow == (kJump | kReturn) || (rest & kSet) != 0) {
+      fail(target, "a jump has marks that are not known here");
+    }
+    element.kind = flow == kJump ? Kind::kJump : Kind::kReturn;
+    if (flow == kJump) element.operand.text = member_text(target, "Operand");
+    if (flow == kJump && !xml::is_name(element.operand.text)) {
+      fail(target, "a jump goes to `" + element.operand.text + "`, which is no label");
+    }
   } else {
     element.kind = power ? Kind::kCoil : Kind::kSink;
-    element.modifier = storage_of(flags);
+    element.operand = operand(target, "a coil or output");
+    element.modifier = storage_of(rest);
     element.outputs.resize(power ? 1 : 0);
-    // A variable sees no edges: the pin in front of it does.
-    if (!power && (flags & (kRising | kFalling)) != 0) {
-      element.modifier = Modifier::kNone;
-      connect(element.inputs[0], {element.inputs[0].from, modifier_of(flags)}, target);
-    }
-    if (element.operand.text == "???" || element.operand.empty()) {
-      fail(target, "a coil or output has no variable", "give its name in TwinCAT");
-    }
+  }
+  connect(element.inputs[0], wire, target);
+  // A variable and a jump see no edges, and a jump has no mark of its own: the pin in front does.
+  const bool edge = (rest & (kRising | kFalling)) != 0;
+  if (flow != 0 || (!power && edge)) {
+    element.modifier = Modifier::kNone;
+    connect(element.inputs[0], {element.inputs[0].from, modifier_of(rest)}, target);
   }
   push(std::move(element));
 }
 
-Wire NetworkReader::assign(const Item& item) {
+// `leads_on`: its value goes somewhere else, too.
+Wire NetworkReader::assign(const Item& item, bool leads_on) {
   const Item from = object_member(item.node, "RValue");
   const std::vector<Item> targets = items(member(item.node, "OutputItems"), "OutputItems");
-  const uint32_t own = flags_of(item.node);
+  const uint32_t all = kNegation | kSet | kJump | kReturn | kRising | kFalling;
+  const uint32_t own = marks(item.node, all, "an assignment");
   const bool bools = std::all_of(targets.begin(), targets.end(), [](const Item& target) {
     return is_bool(member_text(target.node, "Type"));
   });
   const bool is_power = ladder_ && bools && carries_power(from);
-  Wire wire = is_power ? Wire{power(from, {rail()})} : value(from);
-  if (targets.size() > 1) wire = read_once(std::move(wire), item.node);
+  Wire wire = is_power ? powered(from) : value(from);
+  if (targets.size() > 1 || leads_on) wire = read_once(std::move(wire), item.node);
   if (wire.from.empty() && !failed_) {
     report_.add(Code::kXmlLeftOut, item.node, "nothing is connected to a coil or output");
     return {};
   }
+  if (targets.empty()) {
+    if (own != kReturn) {
+      fail(item.node, "an assignment has no variable");
+    } else {
+      end(item.node, own, wire, is_power);
+    }
+  }
   for (const Item& target : targets) {
-    const uint32_t flags = flags_of(target.node);
-    const uint32_t marks = kNegation | kSet | kRising | kFalling;
-    if ((own & marks & ~flags) != 0) {
+    const uint32_t flags = marks(target.node, all, "a coil or output");
+    if ((own & ~(kJump | kReturn) & ~flags) != 0) {
       fail(item.node,
            "an assignment has the marks " + std::to_string(own) + ", which its variables have not");
     }
@@ -285,9 +253,12 @@ std::vector<std::string> lines_of(std::string_view text) {
 
 network::Network NetworkReader::run(Node network) {
   out_.title = network::title_of(xml::trimmed(member_text(network, "Title")));
-  out_.label.text = member_text(network, "Label");
-  out_.comments = lines_of(member_text(network, "Comment"));
   out_.disabled = is_true(network, "OutCommented");
+  out_.label.text = member_text(network, "Label");
+  if (!out_.label.empty() && !xml::is_name(out_.label.text)) {
+    fail(network, "the label `" + out_.label.text + "` is no name");
+  }
+  out_.comments = lines_of(member_text(network, "Comment"));
   if (is_true(network, "ILActive") && !items(network, "ILLines").empty()) {
     fail(network, "an instruction list does not come in", "show it as FBD in TwinCAT, and save it");
   }
@@ -297,13 +268,30 @@ network::Network NetworkReader::run(Node network) {
     left.outputs.resize(1);
     push(std::move(left));
   }
-  for (const Item& item : items(network, "NetworkItems")) value(item);
+  if (!xml::is(member(network, "NetworkItems"), "l2")) fail(network, "a network has no elements");
+  if (!items(network, "Connectors").empty()) fail(network, "connectors are not known here");
+  for (const Item& item : items(network, "NetworkItems")) {
+    if (item.type == "BoxTreeBox") {
+      box(item, false);
+    } else if (item.type == "BoxTreeAssign") {
+      assign(item, false);
+    } else if (item) {
+      value(item);
+    } else {
+      fail(network, "a network has an element that is none");
+    }
+  }
+  if (failed_) out_.elements.clear();
   if (out_.elements.size() == (ladder_ ? 1 : 0)) out_.elements.clear();
   return std::move(out_);
 }
 
 std::optional<network::Body> read_networks(Node nwl, const std::string& what,
                                            xml::Reporter& report) {
+  if (const ArchiveProblem problem = archive_problem(nwl); problem.node) {
+    report.add(Code::kXmlBody, problem.node, "the body of " + what + ": " + problem.text);
+    return std::nullopt;
+  }
   const Node object = find_object(nwl, "NWLImplementationObject");
   if (!object || !member(object, "NetworkList")) {
     report.add(Code::kXmlBody, nwl, "the body of " + what + " holds no list of networks");
@@ -320,7 +308,7 @@ std::optional<network::Body> read_networks(Node nwl, const std::string& what,
     report.set_network(++number);
     NetworkReader reader(ladder, what, report);
     network::Network made = reader.run(item.node);
-    failed = failed || reader.failed();
+    failed = failed || (reader.failed() && !made.disabled);
     comments.insert(comments.end(), made.comments.begin(), made.comments.end());
     // An empty one, as the editor makes them for new bodies.
     if (made.elements.empty() && made.label.empty()) {

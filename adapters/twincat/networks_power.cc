@@ -1,8 +1,10 @@
 // What of a ladder carries power.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "adapters/twincat/network_reader.h"
+#include "base/limits.h"
 
 namespace twincat {
 
@@ -32,10 +34,8 @@ bool NetworkReader::carries_power(const Item& item) const {
   }
   if (item.type != "BoxTreeBox") return bool(item);
   if (is_logic(item)) return true;
-  const std::vector<Item> pins = items(member(item.node, "OutputItems"), "OutputItems");
   const std::vector<std::string> types = texts(member(item.node, "OutputParam"), "Types");
-  const auto none = std::find_if(pins.begin(), pins.end(), [](const Item& pin) { return !pin; });
-  const size_t output = none == pins.end() ? 0 : static_cast<size_t>(none - pins.begin());
+  const uint32_t output = leading_output(item.node).value_or(0);
   if (output < types.size()) return is_bool(types[output]);
   const std::string type = member_text(item.node, "BoxType");
   for (const char* name : {"EQ", "NE", "LT", "LE", "GT", "GE"}) {
@@ -48,9 +48,8 @@ std::vector<Link> NetworkReader::contact(const Item& item, std::vector<Link> fro
   const Node operand = member(item.node, "Operand");
   Element out;
   out.kind = Kind::kContact;
-  out.operand.text = member_text(operand, "Operand");
-  out.modifier = modifier_of(flags_of(operand));
-  if (out.operand.text == "???") fail(item.node, "a contact has no variable", "give its name");
+  out.operand = this->operand(operand, "a contact");
+  out.modifier = modifier_of(marks(operand, kNegation | kRising | kFalling, "a contact"));
   out.inputs.resize(1);
   out.outputs.resize(1);
   connect(out.inputs[0], {std::move(from)}, item.node);
@@ -59,7 +58,8 @@ std::vector<Link> NetworkReader::contact(const Item& item, std::vector<Link> fro
 
 // Power that also needs the wire.
 std::vector<Link> NetworkReader::both(std::vector<Link> from, Wire wire, Node at) {
-  const bool all = from == std::vector<Link>{rail()};
+  if (wire.from.empty()) fail(at, "nothing is connected to a branch");
+  const bool all = from == std::vector<Link>{{0, 0}};
   if (all && wire.modifier == Modifier::kNone) return wire.from;
   Element block;
   block.kind = Kind::kBlock;
@@ -74,24 +74,80 @@ std::vector<Link> NetworkReader::both(std::vector<Link> from, Wire wire, Node at
 std::vector<Link> NetworkReader::branches(const std::vector<Item>& trees,
                                           const std::vector<Link>& from) {
   std::vector<Link> out;
+  std::set<std::pair<uint32_t, uint32_t>> seen;
   for (const Item& tree : trees) {
+    links_ += from.size();
+    if (links_ > base::kMaxLinks) {
+      fail(tree.node, "its wires connect more than " + std::to_string(base::kMaxLinks) + " pairs");
+    }
     for (Link link : power(tree, from)) {
-      if (std::find(out.begin(), out.end(), link) == out.end()) out.push_back(link);
+      if (seen.emplace(link.element, link.output).second) out.push_back(link);
     }
   }
   return out;
 }
 
+namespace {
+
+template <class Is>
+bool any_below(const Item& item, Is is) {
+  struct Finder : pugi::xml_tree_walker {
+    explicit Finder(Is wanted) : is(wanted) {}
+    bool for_each(Node& node) override { return !(found = is(node)); }
+    Is is;
+    bool found = false;
+  } finder(is);
+  Node node = item.node;
+  return is(node) || (node.traverse(finder), finder.found);
+}
+
+bool calls_instance(const Item& item) {
+  return any_below(item, [](Node node) {
+    return xml::attribute(node, "n") == "Instance" && !member_text(node, "Operand").empty();
+  });
+}
+
+bool begins_at_feed(const Item& item) {
+  return any_below(item, [](Node node) {
+    return xml::attribute(node, "t") == "BoxTreeTerminator" && !member(node, "Input");
+  });
+}
+
+}  // namespace
+
+// Where the editor says BoxShortCircuit, a block in a branch is not called while another branch has
+// power. That is no form of a drawing here.
+void NetworkReader::check_parallel(const Item& item, const std::vector<Item>& trees) {
+  const std::string mode = member_text(item.node, "Mode");
+  if (!mode.empty() && mode != "BoxShortCircuit" && mode != "Sequential") {
+    fail(item.node, "branches of mode `" + mode + "` are not known here");
+  }
+  if (trees.empty()) fail(item.node, "a branch has no ways");
+  if (mode == "Sequential" || trees.size() < 2) return;
+  if (std::any_of(trees.begin(), trees.end(), calls_instance)) {
+    fail(item.node, "a function block stands in a branch whose evaluation ends early",
+         "call it in a network of its own, and make its output a contact");
+  }
+}
+
 std::vector<Link> NetworkReader::power(const Item& item, std::vector<Link> from) {
   if (failed_) return {};
   if (item.type == "BoxTreeOperand") return contact(item, std::move(from));
-  if (item.type == "BoxTreeTerminator") {  // without an input it is the rail
+  if (item.type == "BoxTreeTerminator") {  // without an input it is what feeds it
+    marks(item.node, 0, "the end of a wire");
     const Item input = object_member(item.node, "Input");
     return input ? power(input, std::move(from)) : from;
   }
   if (item.type == "BoxTreeParallel") {
+    marks(item.node, 0, "a branch");
+    const std::vector<Item> trees = items(item.node, "Trees");
+    check_parallel(item, trees);
     const Item input = object_member(item.node, "Input");
-    return branches(items(item.node, "Trees"), input ? power(input, std::move(from)) : from);
+    if (input) from = power(input, std::move(from));
+    std::vector<Link> around = std::exchange(feed_, from);  // boxes in the ways begin there
+    std::vector<Link> out = branches(trees, from);
+    feed_ = std::move(around);
+    return out;
   }
   if (is_logic(item)) {
     const std::vector<Item> pins = items(item.node, "InputItems");
@@ -99,6 +155,8 @@ std::vector<Link> NetworkReader::power(const Item& item, std::vector<Link> from)
     for (const Item& pin : pins) from = power(pin, std::move(from));
     return from;
   }
+  // What begins where the branch does has its power already: that of a box is its output.
+  if (from == feed_ && begins_at_feed(item)) from = {{0, 0}};
   return both(std::move(from), value(item), item.node);
 }
 

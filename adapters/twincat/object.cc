@@ -106,6 +106,11 @@ std::string ObjectWriter::body(Node owner, const std::string& what) {
   Node implementation = xml::child(owner, "Implementation");
   if (!implementation) return {};
   std::string out;
+  const std::vector<Node> all = xml::children(owner, "Implementation");
+  if (all.size() > 1 || xml::children(implementation).size() > 1) {
+    report_.add(Code::kXmlBody, all.back(), what + " has several bodies");
+    out += error_pragma(what + " has several bodies");
+  }
   for (Node form : xml::children(implementation)) {
     if (xml::is(form, "ST")) {
       out += xml::text_of(form);

@@ -82,7 +82,8 @@ std::string ChartAttributes::action_rows(Node step, std::string_view indent,
 
 std::string ChartAttributes::after_least_time(const std::string& condition, const std::string& step,
                                               const std::string& time) {
-  return "(" + condition + ") AND " + step + ".T >= " + time;
+  const bool plain = time.find(' ') == std::string::npos;
+  return "(" + condition + ") AND " + step + ".T >= " + (plain ? time : "(" + time + ")");
 }
 
 void OwnActions::add(const ChartAttributes& step) {
@@ -92,6 +93,27 @@ void OwnActions::add(const ChartAttributes& step) {
   if (!step[ChartAttribute::kEntry].empty()) {
     entry.insert(base::fold_name(step[ChartAttribute::kEntry]));
   }
+  if (!step[ChartAttribute::kExit].empty()) {
+    exit.insert(base::fold_name(step[ChartAttribute::kExit]));
+  }
+}
+
+void OwnActions::add_usual(std::string_view name) { usual.insert(base::fold_name(name)); }
+
+std::string OwnActions::conflict() const {
+  const auto both = [](const std::set<std::string>& a, const std::set<std::string>& b,
+                       const char* what) {
+    for (const std::string& name : a) {
+      if (b.count(name) != 0) return "the action `" + name + "` is that of " + what;
+    }
+    return std::string();
+  };
+  for (const std::string& text : {both(entry, main, "an entry and of an active step"),
+                                  both(entry, exit, "an entry and of an exit"),
+                                  both(main, usual, "an active step and in an action block")}) {
+    if (!text.empty()) return text;
+  }
+  return {};
 }
 
 std::string OwnActions::head(std::string_view name) const {

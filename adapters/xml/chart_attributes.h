@@ -50,7 +50,13 @@ class ChartAttributes {
 struct OwnActions {
   std::set<std::string> main;
   std::set<std::string> entry;
+  std::set<std::string> exit;
+  std::set<std::string> usual;  // in the action block of a step
   void add(const ChartAttributes& step);
+  void add_usual(std::string_view name);
+  // An action that would have to run twice in a scan, or with a final scan and without one: why it
+  // cannot be in both places. Empty: there is none.
+  std::string conflict() const;
   // What stands in front of such an ACTION: its attribute, or nothing.
   std::string head(std::string_view name) const;
   bool is_entry(std::string_view name) const;

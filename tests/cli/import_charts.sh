@@ -100,6 +100,7 @@ chart $exclude TRUE | refused 'error\[E1083\]: POU Plant: a step that is exclude
 chart $least 'T#1s; n := 1' | refused 'error\[E1074\]: POU Plant: the shortest time `T#1s; n := 1` of a step is neither time nor variable'
 chart $main Filling | sed "s|<attribute guid=\"$name\">n &gt;= 3|<attribute guid=\"$exclude\">TRUE|" |
   refused 'error\[E1083\]: POU Plant: a transition that is excluded from the build does not come in'
+chart $entry Filling $main Filling | refused 'error\[E1083\]: POU Plant: the chart: the action `filling` is that of an entry and of an active step'
 chart 00000000-0000-0000-0000-000000000001 x | plant >odd.xml
 expect 0 stc import odd.xml -o odd
 said 'warning\[W0070\]: POU Plant: the attribute 00000000-0000-0000-0000-000000000001 of an element of a chart is not understood'
@@ -156,6 +157,13 @@ echo "$(element Step "$(list '<o t="SFCAction" />')" $name A)" | bad_chart E1083
 echo "$(element Step '' $name '1A')" | bad_chart E1074 'a step is called `1A`, which is no name'
 echo "$(element Macro '' $name A)" | bad_chart E1083 'an element of type `SFCMacro` is not known here'
 echo "$a$(element Transition '' $name T $exclude TRUE)$back" | bad_chart E1083 'a transition that is excluded'
+echo "$a$(element Transition '' $name 'TRUE; n := 1')$back" | bad_chart E1083 'the condition `TRUE; n := 1` is no expression'
+echo "$(element Step '' $name A $init TRUE $least 'T#1s; n := 1')$go$back" | bad_chart E1074 'the shortest time `T#1s; n := 1` of a step'
+echo "$a$go$(element Jump '' $name A $exclude TRUE)" | bad_chart E1083 'a jump that is excluded'
+echo "$a$(element Branch '' $parallel FALSE)$back" | bad_chart E1083 'branches that have no ways'
+echo "$(element Step "$(list "$(element Action '' $name Act e174fc0d-80b0-4a9e-a530-ca239c249a50 'N; x')")" $name A)" |
+  bad_chart E1083 'an action of step `A` has the qualifier `N; x`'
+echo "$(element Step '' $name A $entry Act $leave Act)$go$back" | bad_chart E1083 'the action `act` is that of an entry and of an exit'
 members='<Transition Name="T"><Implementation><ST>n := 1; n := 2;</ST></Implementation></Transition>'
 echo "$a$(element Transition '' $name T)$back" | bad_chart E1083 'transition `T` is no single expression in ST'
 members='<ObjectProperties><o t="SFCProperty"><d2 n="Flags"><v>Init</v><o><v n="Use">true</v></o><v>Reset</v><o><v n="Use">false</v></o></d2></o></ObjectProperties>'

@@ -280,6 +280,52 @@ X
 refused 'an instruction list does not come in' <<'X'
 <v n="ILActive">true</v><l2 n="ILLines"><o/></l2><l2 n="NetworkItems" />
 X
+mark() { printf '<o n="Flags" t="Flags"><v n="Flags">%s</v></o>' "$1"; }
+coil() { printf '<o n="OutputItems" t="OutputItemList"><l2 n="OutputItems" cet="Operand"><o><v n="Operand">"%s"</v>%s</o></l2></o>' "$1" "$(mark "$2")"; }
+set_to() { printf '<o t="BoxTreeAssign">%s<o n="RValue" t="BoxTreeOperand">%s</o></o>' "$1" "$2"; }
+for odd in 17 2 64 x 4294967297; do
+  set_to "$(to a)" "$(op b $odd)" | items '' | refused 'an operand has the marks'
+done
+for odd in 18 17 48 12 64; do
+  set_to "$(coil a $odd)" "$(op b)" | items '' | refused 'a (coil or output|jump) has (the )?marks'
+done
+set_to "$(coil '1 + 2' 4)" "$(op b)" | items '' | refused 'a jump goes to .1 \+ 2., which is no label'
+for text in 'b; c := TRUE' 'b (* ' 'b // ' 'P b' ')'; do
+  set_to "$(to a)" "$(op "$text")" | items '' | refused 'an operand is .*, which is no expression'
+done
+set_to "$(to 'a; b')" "$(op b)" | items '' | refused 'a coil or output is .a; b., which is no expression'
+printf '<v n="Label">"my label"</v><l2 n="NetworkItems" />' | refused 'the label .my label. is no name'
+printf '<o>%s</o><o>%s</o>' "$(op a)" "$(op b)" | box 'AND(a, b); c := OR' '' | items '' | refused 'a box is of type'
+printf '<o>%s</o>' "$(op b)" | box NOT '<v n="EN">true</v>' | items '' | refused 'the box .NOT. has EN, and no pin of that name'
+printf '<o>%s</o>' "$(op b)" | box NOT '<l2 n="InputFlags" cet="Flags"><n/><o><v n="Flags">1</v></o></l2>' | items '' |
+  refused 'a pin of the box .NOT. has the marks 1'
+two=$(printf '<o>%s</o>' "$(op b)" | box F '<o n="OutputItems" t="OutputItemList"><l2 n="OutputItems"><n/><n/></l2></o>')
+printf '%s' "$two" | box NOT '' | items '' | refused 'which output of the box .F. leads on is not said'
+printf '<o t="BoxTreeAssign"><o n="OutputItems" t="OutputItemList"><l2 n="OutputItems" /></o><o n="RValue" t="BoxTreeOperand">%s</o></o>' "$(op b)" |
+  items '' | refused 'an assignment has no variable'
+wire() { printf '<o t="BoxTreeDemux"><v n="VarId">%s</v><o n="Input" t="BoxTreeOperand">%s</o></o>' "$1" "$(op "$2")"; }
+printf '%s%s' "$(wire 1 a)" "$(wire 1 b)" | items '' | refused 'there are two wires 1'
+wire '' a | items '' | refused 'there are two wires'
+wire 1 '' | items '' | refused 'nothing is connected to wire 1'
+ways() { printf '<o t="BoxTreeAssign">%s<o n="RValue" t="BoxTreeParallel"><v n="Mode">%s</v><l2 n="Trees">%s</l2></o></o>' "$(to a)" "$1" "$2"; }
+leaf="<o t=\"BoxTreeOperand\">$(op b)</o>"
+called=$(printf '%s' "$leaf" | box TON '<o n="Instance" t="Operand"><v n="Operand">"t"</v></o><o n="InputParam" t="ParamList"><l2 n="Names" cet="String"><v>IN</v></l2></o>')
+ways Other "$leaf$leaf" | items '' | refused 'branches of mode .Other. are not known here' Ld
+ways BoxShortCircuit "$leaf$called" | items '' | refused 'a function block stands in a branch whose evaluation ends early' Ld
+ways Sequential '' | items '' | refused 'a branch has no ways' Ld
+printf '<l2 n="Connectors"><o/></l2><l2 n="NetworkItems" />' | refused 'connectors are not known here'
+printf '<v n="Comment">"c"</v>' | refused 'a network has no elements'
+whole() {  # whole TEXT: of the archive itself
+  drawn Fbd
+  expect 1 stc check drawn.TcPOU
+  said "error\\[E1083\\]: POU Drawn: the body of Drawn: $1"
+}
+printf '<l2 n="NetworkItems" /><l2 n="NetworkItems" />' | whole 'a member has no name, or that of another one'
+printf '<l2 n="NetworkItems"><v>1</v></l2>' | whole 'a list holds what is no object'
+# What is commented out may be unfinished.
+printf '<v n="OutCommented">true</v><l2 n="NetworkItems">%s</l2>' "$(set_to "$(to '???')" "$(op b)")" | drawn Fbd
+expect 0 stc import drawn.TcPOU -o drawn_out
+said 'note\[W0071\]: POU Drawn, network 2: a network that is commented out does not come in: a coil or output has no variable'
 # Nothing at a coil is said, and the rest comes in.
 items '' <<X | drawn Fbd
 <o t="BoxTreeAssign">$(to a)<n n="RValue" /></o><o t="BoxTreeAssign">$(to c)<o n="RValue" t="BoxTreeOperand">$(op b)</o></o>

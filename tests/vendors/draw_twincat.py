@@ -572,8 +572,9 @@ END_PROGRAM
 
 CASES["drawn_ladder"] = {"MAIN": pou("MAIN", """PROGRAM MAIN
 VAR
-	n : INT;
-	start, stop, thermal, motor, lamp, fault, blink, hold, always, third : BOOL;
+	n, k, runs : INT;
+	start, stop, thermal, motor, lamp, fault, blink, hold, always, third, held, counted : BOOL;
+	tofHeld : TOF;
 END_VAR
 """, "Ld", [
     [box("ADD", RAIL, val("n"), val("1"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
@@ -589,11 +590,24 @@ END_VAR
     [to(var("fault", flags=RESET), var("start", flags=RISING))],
     [to("hold", parallel(None, box("AND", var("motor"), var("lamp")), var("fault")))],
     [to("always", RAIL)],
-    [to("third", ("terminator", box("AND", var("motor"), parallel(var("lamp"), var("start"), var("hold")))))],
+    # Boxes in the ways of a branch begin with what feeds it; what they give is their output.
+    [to("held", parallel(box("AND", var("motor"), var("stop", flags=NEGATED)),
+                         fb("TOF", "tofHeld", {"IN": RAIL, "PT": val("T#20ms", "TIME")}, {"Q": None, "ET": ""},
+                            ("BOOL", "TIME"))))],
+    [to("counted", parallel(var("motor"), box("ADD", RAIL, val("k"), val("1"), names=("EN",), out_names=("ENO", ""),
+                                               out_types=("BOOL", "INT"), outputs=(None, var("k", "INT")), en=True,
+                                               call="Add"),
+                            box("EQ", val("n"), val("5"))))],
+    # The jump is one of a negated value.
+    [to(var("Over", flags=JUMP | NEGATED), var("motor"), JUMP)],
+    [box("ADD", RAIL, val("runs"), val("1"), names=("EN",), out_names=("ENO", ""), out_types=("BOOL", "INT"),
+         outputs=(None, var("runs", "INT")), en=True, call="Add")],
+    ([to("third", ("terminator", box("AND", var("motor"), parallel(var("lamp"), var("start"), var("hold")))))], {"label": "Over"}),
 ]), "twin": """PROGRAM MAIN
 VAR
-  n : INT;
-  start, stop, thermal, motor, lamp, fault, blink, hold, always, third : BOOL;
+  n, k, runs : INT;
+  start, stop, thermal, motor, lamp, fault, blink, hold, always, third, held, counted : BOOL;
+  tofHeld : TOF;
   fell : F_TRIG; rose : R_TRIG;
 END_VAR
 n := n + 1;
@@ -608,6 +622,11 @@ rose(CLK := start);
 IF rose.Q THEN fault := FALSE; END_IF
 hold := (motor AND lamp) OR fault;
 always := TRUE;
+tofHeld(IN := motor AND NOT stop, PT := T#20ms);
+held := tofHeld.Q;
+IF motor THEN k := k + 1; END_IF
+counted := motor;
+IF motor THEN runs := runs + 1; END_IF
 third := motor AND lamp AND (start OR hold);
 END_PROGRAM
 """}

@@ -1,9 +1,14 @@
-// Text of XML that becomes an operand between other text: one expression and nothing else.
-#include "adapters/plcopen/reader.h"
+#include "adapters/xml/operand.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "adapters/xml/document.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/lex/operands.h"
 
-namespace plcopen {
+namespace xml {
 namespace {
 
 using frontend::ends_operand;
@@ -72,4 +77,14 @@ bool is_plain_operand(std::string_view text) {
   return text.find('(') == std::string_view::npos && is_operand(text);
 }
 
-}  // namespace plcopen
+bool is_dotted_name(std::string_view text) {
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('.'), text.size());
+    if (!is_name(text.substr(0, end)) || end + 1 == text.size()) return false;
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (text.empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace xml
