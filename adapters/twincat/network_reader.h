@@ -50,6 +50,7 @@ class NetworkReader {
   uint32_t push(network::Element element);
   void connect(network::Input& input, Wire wire, Node at);
 
+  static std::vector<Link> rail() { return {{0, 0}}; }
   Wire value(const Item& item);
   Wire demux(const Item& item);
   Wire read_once(Wire wire, Node at);
@@ -66,7 +67,7 @@ class NetworkReader {
   // --- ladder: what power goes through
   bool is_logic(const Item& item) const;
   bool carries_power(const Item& item) const;
-  Wire powered(const Item& item) { return {power(item, feed_)}; }
+  Wire powered(const Item& item) { return {power(item, rail())}; }
   std::vector<Link> power(const Item& item, std::vector<Link> from);
   void check_parallel(const Item& item, const std::vector<Item>& trees);
   std::vector<Link> branches(const std::vector<Item>& trees, const std::vector<Link>& from);
@@ -74,7 +75,7 @@ class NetworkReader {
   std::vector<Link> both(std::vector<Link> from, Wire wire, Node at);
 
   bool ladder_;
-  std::vector<Link> feed_ = {{0, 0}};  // the rail, or what feeds the branches that are read
+  std::vector<Link> feed_ = rail();  // or what feeds the ways that are read: the rail in them
   const std::string& what_;
   xml::Reporter& report_;
   bool failed_ = false;

@@ -59,7 +59,7 @@ std::vector<Link> NetworkReader::contact(const Item& item, std::vector<Link> fro
 // Power that also needs the wire.
 std::vector<Link> NetworkReader::both(std::vector<Link> from, Wire wire, Node at) {
   if (wire.from.empty()) fail(at, "nothing is connected to a branch");
-  const bool all = from == std::vector<Link>{{0, 0}};
+  const bool all = from == rail();
   if (all && wire.modifier == Modifier::kNone) return wire.from;
   Element block;
   block.kind = Kind::kBlock;
@@ -107,10 +107,19 @@ bool calls_instance(const Item& item) {
   });
 }
 
-bool begins_at_feed(const Item& item) {
-  return any_below(item, [](Node node) {
-    return xml::attribute(node, "t") == "BoxTreeTerminator" && !member(node, "Input");
-  });
+bool is_rail(Node node) {
+  return xml::attribute(node, "t") == "BoxTreeTerminator" && !member(node, "Input");
+}
+
+// Does power come into it from the rail, or from what stands for that in a way of a branch?
+bool begins_at_rail(const Item& item) {
+  if (item.type == "BoxTreeTerminator" && !member(item.node, "Input")) return true;
+  if (item.type == "BoxTreeBox") {
+    const std::vector<Item> pins = items(item.node, "InputItems");
+    return !pins.empty() && begins_at_rail(pins[0]);
+  }
+  const char* const inside = item.type == "BoxTreeAssign" ? "RValue" : "Input";
+  return item && begins_at_rail(object_member(item.node, inside));
 }
 
 }  // namespace
@@ -136,7 +145,8 @@ std::vector<Link> NetworkReader::power(const Item& item, std::vector<Link> from)
   if (item.type == "BoxTreeTerminator") {  // without an input it is what feeds it
     marks(item.node, 0, "the end of a wire");
     const Item input = object_member(item.node, "Input");
-    return input ? power(input, std::move(from)) : from;
+    if (input) return power(input, std::move(from));
+    return from == rail() ? feed_ : from;
   }
   if (item.type == "BoxTreeParallel") {
     marks(item.node, 0, "a branch");
@@ -156,7 +166,12 @@ std::vector<Link> NetworkReader::power(const Item& item, std::vector<Link> from)
     return from;
   }
   // What begins where the branch does has its power already: that of a box is its output.
-  if (from == feed_ && begins_at_feed(item)) from = {{0, 0}};
+  if (feed_ != rail() && any_below(item, is_rail)) {
+    if (from != feed_ || !begins_at_rail(item)) {
+      fail(item.node, "the rail stands in the middle of a way of a branch");
+    }
+    from = rail();
+  }
   return both(std::move(from), value(item), item.node);
 }
 

@@ -19,6 +19,7 @@ class Maker:
         self.random = random.Random(seed)
         self.ladder = ladder
         self.wires = 0
+        self.inside = 0   # ways of branches
         self.known = []   # of this network: number, meaning
         self.before = []  # trees that define wires
 
@@ -34,11 +35,13 @@ class Maker:
         if pick < 0.36:
             text = self.random.choice(["TRUE", "FALSE"])
             return val(text, "BOOL"), text
-        if pick < 0.40 and self.ladder:
-            return RAIL, "TRUE"
+        if pick < 0.40 and self.ladder and not self.inside:
+            return RAIL, "TRUE"  # in a way of a branch it stands for what feeds that
         if pick < 0.55 and self.ladder:
             feed = self.tree(depth - 1) if self.random.random() < 0.6 else (None, "TRUE")
+            self.inside += 1
             ways = [self.tree(depth - 1) for _ in range(self.random.randint(1, 3))]
+            self.inside -= 1
             either = " OR ".join(f"({meaning})" for _, meaning in ways)
             return parallel(feed[0], *[way for way, _ in ways]), f"({feed[1]}) AND ({either})"
         if pick < 0.62:
