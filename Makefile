@@ -146,11 +146,13 @@ fuzz: setup
 
 SEED := 1
 PROGRAMS := 5000
+DRAWINGS := 300
 differential: build
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --shrink --jobs $(JOBS)
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --dialect iec --shrink --jobs $(JOBS)
 	@$(BUILD)/tests/differential $(SEED) $(PROGRAMS) --changes --shrink --jobs $(JOBS)
 	@python3 tests/fates/main.py $(BUILD)/tests/fates $(SEED) $(PROGRAMS) --jobs $(JOBS)
+	@tests/cli/drawn_random.sh $(CURDIR) $(CURDIR)/$(BUILD) $(SEED) $(DRAWINGS)
 
 # Hours, not minutes: eight hours of each of four simulated plants with changes, clients and faults;
 # 100,000 random programs on every tier; identity changes at 100,000 scans of the line.

@@ -108,7 +108,10 @@ bool calls_instance(const Item& item) {
 }
 
 bool is_rail(Node node) {
-  return xml::attribute(node, "t") == "BoxTreeTerminator" && !member(node, "Input");
+  if (!xml::is(node, "o")) return false;
+  const std::string_view own = xml::attribute(node, "t");
+  const std::string_view type = own.empty() ? xml::attribute(node.parent(), "cet") : own;
+  return type == "BoxTreeTerminator" && !member(node, "Input");
 }
 
 // Does power come into it from the rail, or from what stands for that in a way of a branch?
