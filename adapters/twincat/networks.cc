@@ -80,9 +80,10 @@ uint32_t NetworkReader::marks(Node owner, uint32_t known, const char* what) {
   const uint32_t others = flags & (kNegation | kSet | kJump | kReturn);
   const bool alone = edges == 0 || ((edges == kRising || edges == kFalling) && others == 0);
   if ((flags & ~known) == 0 && alone) return flags;
-  fail(owner, std::string(what) + " has the marks " +
-                  (flags == kUnreadable ? "of no number" : std::to_string(flags)) +
-                  ", which are not known here");
+  fail(owner, std::string(what) +
+                  (flags == kUnreadable
+                       ? " has marks that are no number"
+                       : " has the marks " + std::to_string(flags) + ", which are not known here"));
   return 0;
 }
 

@@ -284,7 +284,7 @@ mark() { printf '<o n="Flags" t="Flags"><v n="Flags">%s</v></o>' "$1"; }
 coil() { printf '<o n="OutputItems" t="OutputItemList"><l2 n="OutputItems" cet="Operand"><o><v n="Operand">"%s"</v>%s</o></l2></o>' "$1" "$(mark "$2")"; }
 set_to() { printf '<o t="BoxTreeAssign">%s<o n="RValue" t="BoxTreeOperand">%s</o></o>' "$1" "$2"; }
 for odd in 17 2 64 x 4294967297; do
-  set_to "$(to a)" "$(op b $odd)" | items '' | refused 'an operand has the marks'
+  set_to "$(to a)" "$(op b $odd)" | items '' | refused 'an operand has (the marks|marks that are no number)'
 done
 for odd in 18 17 48 12 64; do
   set_to "$(coil a $odd)" "$(op b)" | items '' | refused 'a (coil or output|jump) has (the )?marks'
