@@ -121,10 +121,13 @@ T
 refused 1:8 'text without closing quote' <<'T'
 name = "a
 T
-refused 1:11 'unknown escape; known are' <<'T'
+refused 1:8 'the text of `name` has control characters' <<'T'
 name = "a\nb"
 T
-printf 'name = "a\033[2Jb"\n' | refused 1:8 'a text with control characters'
+refused 1:17 'the text of `sources` has control characters' <<'T'
+sources = ["a", "b\tc"]
+T
+printf 'name = "a\033[2Jb"\n' | refused 1:8 'the text of `name` has control characters'
 echo 'name = "a"' | toml
 expect 2 stc check plant --name "$(printf 'a\033[2J')"
 printf '[devices.press]\ndriver = "modbus"\n' >plant/stc.toml

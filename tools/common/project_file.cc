@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/visible_text.h"
 #include "tools/common/files.h"
 
 namespace tools {
@@ -14,11 +15,34 @@ const TomlValue* ProjectFile::find(std::string_view key) const {
   return found == table.end() ? nullptr : &found->second;
 }
 
+namespace {
+
+// They become names in an image, which holds none with control characters.
+base::Status check_texts(const std::string& path, const TomlTable& table) {
+  for (const auto& [key, value] : table) {
+    const auto wrong = [&](TomlPlace place) {
+      return toml_error(path, place.line, place.column,
+                        "the text of `" + key + "` has control characters");
+    };
+    if (const auto* text = std::get_if<std::string>(&value.data)) {
+      if (base::has_control(*text)) return wrong(value.place);
+    } else if (const auto* list = std::get_if<std::vector<std::string>>(&value.data)) {
+      for (size_t i = 0; i < list->size(); ++i) {
+        if (base::has_control((*list)[i])) return wrong(value.places[i]);
+      }
+    }
+  }
+  return base::Ok{};
+}
+
+}  // namespace
+
 base::Result<ProjectFile> read_project_file(const std::string& path) {
   base::Result<std::string> text = read_text(path);
   if (!text.ok()) return text.error();
   base::Result<TomlTable> table = parse_toml(path, *text);
   if (!table.ok()) return table.error();
+  if (base::Status texts = check_texts(path, *table); !texts.ok()) return texts.error();
   return ProjectFile{path, std::move(*text), std::move(*table)};
 }
 

@@ -3,7 +3,6 @@
 #include <charconv>
 
 #include "base/joined.h"
-#include "base/visible_text.h"
 
 namespace tools {
 namespace {
@@ -147,17 +146,18 @@ class Parser {
         case '\\':
           out += '\\';
           break;
+        case 'n':
+          out += '\n';
+          break;
+        case 't':
+          out += '\t';
+          break;
         default:
-          fail("unknown escape; known are \\\" and \\\\");
+          fail("unknown escape; known are \\\" \\\\ \\n \\t");
           return out;
       }
     }
     ++at_;
-    // Texts become names that others are shown.
-    if (base::has_control(out)) {
-      at_ = begin;
-      fail("a text with control characters");
-    }
     return out;
   }
 
