@@ -240,13 +240,10 @@ double seconds() {
 
 class Workshop {
  public:
-  Workshop(fs::path source, const fs::path& work)
-      : source_(std::move(source)),
-        copy_(work),
-        build_(work / "build/release"),
-        log_(work / "build/log.txt") {
+  Workshop(const fs::path& source, const fs::path& work)
+      : copy_(work), build_(work / "build/release"), log_(work / "build/log.txt") {
     fs::create_directories(build_);
-    copy_tree(source_, copy_);
+    copy_tree(source, copy_);
     if (!run("cd " + quoted(copy_) + " && cmake --preset release")) {
       end("the copy cannot be configured: " + log_.string());
     }
@@ -278,10 +275,15 @@ class Workshop {
   }
 
   Outcome make(const Mutation& one) {
-    if (!mutated_.empty() && mutated_ != one.file) restore();
-    mutated_ = one.file;
-    std::string text = read_file(source_ / one.file);
-    text.replace(text.find(one.before), one.before.size(), one.after);
+    if (mutated_ != one.file) {
+      if (!mutated_.empty()) restore();
+      mutated_ = one.file;
+      original_ = read_file(copy_ / one.file);
+    }
+    std::string text = original_;
+    const size_t at = text.find(one.before);
+    if (at == std::string::npos) end(one.file + " was changed while it was copied: start again");
+    text.replace(at, one.before.size(), one.after);
     write_file(copy_ / one.file, text);
     std::set<std::string> targets;
     for (const Seen& seen : one.seen) targets.insert(target_of(seen.ctest));
@@ -295,7 +297,7 @@ class Workshop {
     return hangs ? Outcome::kHangs : Outcome::kKilled;
   }
 
-  void restore() { write_file(copy_ / mutated_, read_file(source_ / mutated_)); }
+  void restore() { write_file(copy_ / mutated_, original_); }
 
  private:
   static std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
@@ -317,11 +319,11 @@ class Workshop {
                std::to_string(patience) + " -R '^" + seen.ctest + "$'");
   }
 
-  const fs::path source_;
   const fs::path copy_;
   const fs::path build_;
   const fs::path log_;
   std::string mutated_;
+  std::string original_;  // as copied: the sources may change meanwhile
   std::map<std::string, double> usual_;  // seconds of each test without any mutation
 };
 
