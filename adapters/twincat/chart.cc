@@ -49,7 +49,11 @@ std::vector<Item> elements_of(Node segment) {
 class ChartReader {
  public:
   ChartReader(Node object, const std::string& what, xml::Reporter& report)
-      : object_(object), what_(what), report_(report) {}
+      : object_(object), what_(what), report_(report) {
+    for (Node named : xml::children(object, "Transition")) {
+      named_.emplace(base::fold_name(xml::attribute(named, "Name")), named);
+    }
+  }
   std::string run(Node root);
 
  private:
@@ -71,6 +75,7 @@ class ChartReader {
   std::string steps_;
   std::vector<Transition> transitions_;
   std::map<std::string, std::string> least_times_;  // by step
+  std::map<std::string, Node> named_;               // <Transition> of the POU, by folded name
 };
 
 void ChartReader::fail(Code code, Node at, const std::string& text, const std::string& fix) {
@@ -150,9 +155,9 @@ End ChartReader::step(Node node, End at) {
 // An expression, or the name of a <Transition> of the POU, whose body is one.
 std::string ChartReader::condition(const ChartAttributes& attributes, Node node) {
   const std::string name = attributes[ChartAttribute::kName];
-  for (Node named : xml::children(object_, "Transition")) {
-    if (!base::same_name(xml::attribute(named, "Name"), name)) continue;
-    Node body = xml::child(xml::child(named, "Implementation"), "ST");
+  if (const auto found = named_.find(base::fold_name(name)); found != named_.end()) {
+    const Node named = found->second;
+    const Node body = xml::child(xml::child(named, "Implementation"), "ST");
     std::string text(xml::trimmed(xml::text_of(body)));
     const size_t assigned = text.find(":=");
     if (assigned != std::string::npos &&
