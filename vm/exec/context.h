@@ -55,6 +55,7 @@ struct KnownReach {
   uint32_t home = 0;  // data offset of offset 0; 0: there are slots inside
 };
 inline constexpr uint32_t kKnownReaches = 16;
+inline constexpr uint32_t kLoopReaches = 4;  // of pointers that a loop in machine code walks with
 
 // A BOOL in memory. Bytes that came in as another type may be anything; not zero is TRUE.
 enum class Bool : uint8_t {};
@@ -104,7 +105,8 @@ struct Context {
   Trap caught;                        // last
   bool trap_has_place = false;        // `trap` says already where it was
   bool trapped = false;               // since it began: `trap` or `caught` is not empty
-  KnownReach reaches[kKnownReaches];  // by the place of the instruction
+  // By the place of the instruction, then those of loops.
+  KnownReach reaches[kKnownReaches + kLoopReaches];
 };
 
 // What machine code asks where the variable at reaches[site] is another one. The data offset of
@@ -112,6 +114,9 @@ struct Context {
 // there. And the handle moved by the lower half of `bytes`.
 uint64_t resolve_for_code(Context* ctx, uint64_t handle, uint64_t size_and_bytes, uint64_t site);
 uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t site);
+// How far behind the first byte of its variable the handle is, at most one past the end. Where there
+// is none that can be walked over, 2^32 behind the first byte of one without any.
+uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site);
 
 #define STC_HANDLER_ARGS                                                \
   [[maybe_unused]] const ir::Unit *pc, [[maybe_unused]] uint8_t *frame, \

@@ -9,6 +9,7 @@ namespace vm {
 namespace {
 
 constexpr uint32_t kSlotBytes = 4;
+constexpr int32_t kOnePast = 1;  // ir/types/reach.h
 
 // Does a slot have a byte in [begin, end), which lies in the reach?
 bool touches_slot(const Home& home, uint64_t begin, uint64_t end) {
@@ -182,6 +183,21 @@ uint64_t resolve_for_code(Context* ctx, uint64_t handle, uint64_t size_and_bytes
 
 uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t site) {
   return move_handle(*ctx, handle, static_cast<uint32_t>(bytes), ctx->reaches[site]);
+}
+
+uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site) {
+  KnownReach& known = ctx->reaches[site];
+  const int32_t away = ir::handle_away(handle);
+  const std::optional<Home> home = find_home(*ctx, handle);
+  if (home && (away == 0 || away == kOnePast)) {
+    known = known_reach(*home, handle);
+    const uint32_t distance = ir::handle_offset(handle) - known.begin;
+    if (known.home != 0 && known.size != 0 && distance <= known.size) return distance;
+  }
+  constexpr uint64_t kFar = uint64_t{1} << 32;
+  const uint64_t begin = handle - kFar;
+  known = {static_cast<uint32_t>(begin), static_cast<uint32_t>(begin >> 32), 0, 0};
+  return kFar;
 }
 
 bool has_left(const Context& ctx, uint64_t handle, uint32_t size) {

@@ -262,9 +262,18 @@ void Builder::enter_loop(Block block, uint32_t loop) {
   }
   forget_shared();
   // How all of that is found again when the interpreter stopped here.
+  // Of two variables with one value the wider one has all of it.
+  std::unordered_map<Val, uint8_t> widest;
   for (uint32_t v = 0; v < f_.variables.size(); ++v) {
     if (now_.value[v] == kNone) continue;
-    f_.blocks[block].reloads.push_back({v, now_.value[v]});
+    uint8_t& width = widest[now_.value[v]];
+    width = std::max(width, f_.variables[v].width);
+  }
+  for (uint32_t v = 0; v < f_.variables.size(); ++v) {
+    if (now_.value[v] == kNone) continue;
+    if (f_.variables[v].width == widest[now_.value[v]]) {
+      f_.blocks[block].reloads.push_back({v, now_.value[v]});
+    }
     if (now_.dirty[v] == 0 || !f_.variables[v].slot) continue;
     f_.blocks[block].dirty.push_back(
         {f_.variables[v].offset, f_.variables[v].width, now_.value[v]});

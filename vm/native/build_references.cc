@@ -127,7 +127,8 @@ void Builder::resolve() {
   made.site = static_cast<uint8_t>(handle_sites_++ % kKnownReaches);
   const size_t before = f_.nodes.size();
   const Val found = value_of(made, false);
-  if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(false);
+  const bool walks = facts_.is_walked(f_.blocks[block_].loop);
+  if (f_.nodes.size() != before) f_.nodes.back().exit = exit_here(walks);
   write_a(found);
 }
 
@@ -156,7 +157,11 @@ void Builder::move_handle() {
   }
   Node made = node(Op::kMoveHandle, 8, handle, bytes);
   made.site = static_cast<uint8_t>(handle_sites_++ % kKnownReaches);
-  write_a(value_of(made, false));
+  const size_t before = f_.nodes.size();
+  const Val moved = value_of(made, false);
+  const bool walks = facts_.is_walked(f_.blocks[block_].loop);
+  if (walks && f_.nodes.size() != before) f_.nodes.back().exit = exit_here(true);
+  write_a(moved);
 }
 
 }  // namespace vm::native

@@ -298,10 +298,18 @@ uint32_t Builder::exit_here(bool everything) {
     const Variable& variable = f_.variables[v];
     exit.slots.push_back({variable.offset, variable.width, now_.value[v], variable.base});
   };
+  const Accesses accesses = accesses_of(u_);
+  const auto is_written = [&](uint32_t v) {
+    return std::any_of(accesses.begin(), accesses.end(), [&](const Access& access) {
+      return access.writes && !access.reads && facts_.variable(access) == v;
+    });
+  };
   if (everything) {
-    facts_.each_live_behind(unit_, add);
+    facts_.each_live_behind(unit_, [&](uint32_t v) {
+      if (!is_written(v)) add(v);
+    });
   }
-  for (const Access& access : accesses_of(u_)) {
+  for (const Access& access : accesses) {
     const uint32_t v = access.reads ? facts_.variable(access) : kNone;
     if (v != kNone && f_.variables[v].slot) add(v);
   }

@@ -10,8 +10,12 @@ using ir::Opcode;
 
 constexpr size_t kMostLivenessWords = size_t{8} << 20;
 
-// May the execution go on in another POU or in the interpreter?
-bool leaves(Opcode op) { return is_call(op) || ir::opcode_row(op).traps; }
+// May the execution go on in another POU or in the interpreter? The pointers of some loops are moved
+// by the interpreter when they leave their variable.
+bool leaves(Opcode op) {
+  const bool moves = op == Opcode::HANDLE_ADD || op == Opcode::HANDLE_STEP;
+  return moves || is_call(op) || ir::opcode_row(op).traps;
+}
 
 bool is_far(Opcode op) { return op >= Opcode::LDFAR_B && op <= Opcode::STFAR_F64; }
 bool is_far_store(Opcode op) { return op >= Opcode::STFAR_B && op <= Opcode::STFAR_F64; }
@@ -55,7 +59,8 @@ Accesses accesses_of(const ir::Unit& unit) {
 }
 
 base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
-                              const ir::LinkedPou& pou, const BodyOf& body_of) {
+                              const ir::LinkedPou& pou, const BodyOf& body_of,
+                              const std::vector<uint32_t>* unwalked) {
   Facts facts;
   facts.common_ = &common;
   facts.image_ = &image;
@@ -69,6 +74,8 @@ base::Result<Facts> Facts::of(const ir::Image& image, const ImageFacts& common,
   facts.find_pinned();
   facts.find_variables();
   facts.find_overlaps();
+  facts.walked_.assign(facts.loops_.size(), false);
+  if (unwalked != nullptr) facts.find_walked(*unwalked);
   facts.find_reach();
   if (!facts.fits(why)) return base::Error{base::Refusal::kTooLarge, why};
   facts.find_loop_effects();

@@ -146,8 +146,10 @@ class Facts {
   // The body that stands in the place of calls of a POU; null: it is called.
   using BodyOf = std::function<const Body*(uint32_t pou)>;
   // kTooLarge and others: why this POU stays with the interpreter. Borrows everything.
+  // `unwalked`: first units of loops whose pointers are followed one by one; null: all of them.
   static base::Result<Facts> of(const ir::Image& image, const ImageFacts& common,
-                                const ir::LinkedPou& pou, const BodyOf& body_of = {});
+                                const ir::LinkedPou& pou, const BodyOf& body_of = {},
+                                const std::vector<uint32_t>* unwalked = nullptr);
 
   const ir::Image& image() const { return *image_; }
   const ir::LinkedPou& pou() const { return *pou_; }
@@ -174,6 +176,9 @@ class Facts {
   uint32_t loop_of(Block block) const { return loop_of_[block]; }  // innermost, or kNone
   // A call that no body stands for.
   bool has_call(uint32_t loop) const { return loop_calls_[loop]; }
+  // Is it taken that what pointers lead to in the loop is no variable that it names? walk_pointers()
+  // has to ask for that.
+  bool is_walked(uint32_t loop) const { return loop != kNone && walked_[loop]; }
   // In the place of the call at the unit; none: it calls.
   std::span<const InPlace> bodies_at(uint32_t unit) const;
   bool has_body(uint32_t unit) const { return !bodies_at(unit).empty(); }
@@ -247,6 +252,7 @@ class Facts {
   void find_pinned();
   void find_variables();
   void find_overlaps();
+  void find_walked(const std::vector<uint32_t>& unwalked);
   void find_reach();
   Reach reach_of_unit(uint32_t unit) const;
   void find_targets();
@@ -274,6 +280,7 @@ class Facts {
   std::vector<Loop> loops_;
   std::vector<uint32_t> loop_of_;
   std::vector<bool> loop_calls_;
+  std::vector<bool> walked_;  // by loop
   ByKey<std::vector<InPlace>> bodies_;  // by unit
   std::vector<std::vector<uint32_t>> loop_reads_;
   std::vector<std::vector<uint32_t>> loop_killed_;
@@ -287,7 +294,7 @@ class Facts {
   std::vector<std::vector<uint32_t>> overlaps_;
   std::vector<uint32_t> by_place_;  // variables by base, then offset
   ByKey<Reach> reach_;              // by offset of a frame slot with an address
-  ByKey<Reach> targets_, sources_;  // by unit: what it writes, what COPY reads
+  ByKey<Reach> targets_, sources_;  // by unit: what it writes, what COPY and walks read
   std::vector<uint32_t> results_;
   size_t words_ = 0;
   std::vector<uint64_t> live_in_;

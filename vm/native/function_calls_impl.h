@@ -65,6 +65,12 @@ void FunctionEmitter<Self, Registers>::node(const Step& step) {
       return self().resolve(n, step);
     case Op::kMoveHandle:
       return self().move_handle(n, step);
+    case Op::kReach:
+      return self().reach(n, step);
+    case Op::kReachPart:
+      return self().reach_part(n, step);
+    case Op::kHandleAt:
+      return self().handle_at(n, step);
     case Op::kExitIf:
       return self().exit_if(n, step, exit_label(n.exit));
     case Op::kInstance:

@@ -333,6 +333,10 @@ template <class Self, class Registers>
 void FunctionEmitter<Self, Registers>::store_slot(const SlotValue& slot, const Place& place) {
   constexpr Place kInScratch{Place::kRegister, false, false, Registers::kIntegerCount, 0};
   const Address to = self().address({slot.base, 1, kNone, int64_t{slot.offset}}, {});
+  if (slot.site != kNoSite) {
+    load_place(Registers::kScratch, place);
+    return self().store_handle(to, slot.site);
+  }
   if (!slot.is_address) return store_place(to, place, slot.width);
   if (slot.address.index != kNone) load_place(Registers::kScratch, place);
   self().address_to_data(Registers::kScratch, self().address(slot.address, kInScratch));

@@ -84,6 +84,11 @@ enum class Op : uint8_t {
   // half says how many; leaves at `exit` when they are not there
   kResolve,
   kMoveHandle,  // the handle in[0] moved by the low 4 bytes of in[1]
+  // In front of a loop (walk.cc): how far behind the first byte of its variable the handle in[0] is,
+  // which `site` knows from then on. What cannot be walked over is further away than its size.
+  kReach,
+  kReachPart,  // of what in[0], a kReach, has found: the member of KnownReach at byte `imm`
+  kHandleAt,   // the handle that lies so far behind: in[0], at most one past the end
   // leaves at `exit` when in[0] cond in[1]
   kExitIf,
   // address of the instance whose ID is in[0]; leaves at `exit` when it is none
@@ -146,7 +151,7 @@ struct Node {
   bool immutable = false;  // kLoad: no code writes there
   bool dead = false;
   uint8_t folded = 0xff;  // the operand that is what lies at `mem` (fold_loads)
-  uint8_t site = 0;       // kResolve, kMoveHandle: of Context::reaches
+  uint8_t site = 0;       // of Context::reaches
   Val result = kNone;
   Val in[4] = {kNone, kNone, kNone, kNone};
   uint64_t imm = 0;
@@ -168,6 +173,8 @@ struct Value {
   uint32_t home = kNone;  // of a parameter: the variable that holds it on every way there, too
 };
 
+inline constexpr uint8_t kNoSite = 0xff;
+
 // Variables that are dirty, and what they hold there.
 struct SlotValue {
   uint32_t offset = 0;
@@ -178,6 +185,7 @@ struct SlotValue {
   // index.
   bool is_address = false;
   Mem address = {};
+  uint8_t site = kNoSite;  // else the handle that lies `value` bytes behind, as of kHandleAt
 };
 struct Exit {
   uint32_t unit = 0;

@@ -1,7 +1,7 @@
 // What a loop need not do in every turn.
 #pragma once
 
-#include "vm/native/lir.h"
+#include "vm/native/facts.h"
 
 namespace vm::native {
 
@@ -11,6 +11,12 @@ bool is_operation(const Node& node);
 // Puts a block in front of every loop head. All ways in lead through it, that of a resumed
 // execution too, so what it computes holds in the whole loop.
 void insert_preheaders(Function& function);
+
+// After insert_preheaders(), of loops that facts have as walked: pointers become distances from the
+// first byte of their variable, which is looked for once, in front of the loop. There is asked, too,
+// that it holds none of the variables that the loop names. False: some loop's pointers go other ways;
+// it has been added to `unwalked`, and the Function is to be made again.
+bool walk_pointers(Function& function, const Facts& facts, std::vector<uint32_t>& unwalked);
 
 // After insert_preheaders(): what a dominating block computes or checks is not done again.
 void number_again(Function& function);

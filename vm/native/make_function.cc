@@ -63,15 +63,21 @@ const Body* Bodies::body(uint32_t pou, uint32_t caller) {
 base::Result<Function> make_function(const ir::Image& image, Bodies& bodies, uint32_t pou,
                                      std::vector<uint32_t>& inlined) {
   const auto body_of = [&](uint32_t callee) { return bodies.body(callee, pou); };
-  base::Result<Facts> facts = Facts::of(image, bodies.common(), image.pous[pou], body_of);
-  if (!facts.ok()) return facts.error();
-  Function function = Builder(*facts).run();
-  inlined = inline_calls(function, [&](uint32_t callee) {
-    return Callee{&body_of(callee)->function, bodies.units(callee)};
-  });
-  forward_memory(function);
-  choose(function);
-  insert_preheaders(function);
+  std::vector<uint32_t> unwalked;
+  Function function;
+  do {
+    base::Result<Facts> facts =
+        Facts::of(image, bodies.common(), image.pous[pou], body_of, &unwalked);
+    if (!facts.ok()) return facts.error();
+    function = Builder(*facts).run();
+    inlined = inline_calls(function, [&](uint32_t callee) {
+      return Callee{&body_of(callee)->function, bodies.units(callee)};
+    });
+    forward_memory(function);
+    choose(function);
+    insert_preheaders(function);
+    if (walk_pointers(function, *facts, unwalked)) break;
+  } while (true);
   number_again(function);
   drop_proven_checks(function);
   drop_unused(function);

@@ -13,6 +13,7 @@ bool is_operation(const Node& n) {
     case Op::kConst:
     case Op::kStore:
     case Op::kTaskTime:
+    case Op::kReach:
     case Op::kAdvanceTime:
     case Op::kNative:
     case Op::kHelper:

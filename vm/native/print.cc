@@ -14,7 +14,7 @@ const char* const kNames[] = {
     "compare",  "select",     "selectcmp",  "sext",       "zext",     "fadd",        "fsub",
     "fmul",     "fdiv",       "fmin",       "fmax",       "fneg",     "fabs",        "fsqrt",
     "fcompare", "fselect",    "inttofloat", "floattoint", "fwidth",   "bitstof",     "ftobits",
-    "resolve",  "movehandle", "exitif",     "instance",   "tasktime", "advancetime", "pool",
+    "resolve",  "movehandle", "reach",      "reachpart",  "handleat", "exitif",     "instance",   "tasktime", "advancetime", "pool",
     "context",  "native",     "helper",     "call",       "enter"};
 const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
                               "<u", "<=u", ">u", ">=u", "no bit", "any bit"};

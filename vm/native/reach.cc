@@ -13,6 +13,7 @@ using ir::Opcode;
 constexpr size_t kMostParts = 6;
 constexpr size_t kMostDeferred = 24;  // of one loop: every exit of it stores them
 
+bool loads_through(Opcode op) { return op >= Opcode::LD_B && op <= Opcode::LD_F64; }
 bool stores_through(Opcode op) {
   return (op >= Opcode::ST_B && op <= Opcode::ST_F64) || op == Opcode::ST_REF_AT ||
          op == Opcode::COPY || op == Opcode::SCOPY || op == Opcode::WCOPY;
@@ -111,23 +112,45 @@ void Facts::find_reach() {
   find_targets();
 }
 
+// Innermost loops that follow pointers and call nothing.
+void Facts::find_walked(const std::vector<uint32_t>& unwalked) {
+  std::vector<bool> outer(loops_.size(), false);
+  for (const Loop& loop : loops_) {
+    if (loop.parent != kNone) outer[loop.parent] = true;
+  }
+  for (uint32_t l = 0; l < loops_.size(); ++l) {
+    const uint32_t first = blocks_[loops_[l].head].first;
+    if (outer[l] || std::ranges::find(unwalked, first) != unwalked.end()) continue;
+    bool follows = false;
+    bool calls = false;
+    for (uint32_t i = first; i < blocks_[loops_[l].last].behind; i = next(i)) {
+      calls |= is_call(code_[i].opcode());
+      follows |= code_[i].opcode() == Opcode::RESOLVE;
+    }
+    walked_[l] = follows && !calls;
+  }
+}
+
 // What stores write, and copies read, each where it stands: of the slot with the address the last
 // unit in front says where that is.
 void Facts::find_targets() {
   NumberTable made_by;  // unit, by offset of a frame slot
+  bool walks = false;
   const auto at = [&](uint32_t slot) {
     const uint32_t near = made_by.find(slot);
+    if (near != kNone && walks && code_[near].opcode() == Opcode::RESOLVE) return Reach();
     if (near != kNone) return reach_of_unit(near);
     const Reach* const any = reach_.find(slot);
     return any == nullptr ? Reach{true, false, {}} : *any;
   };
   for (const UnitRange& block : blocks_) {
     made_by.clear();
+    walks = is_walked(loop_of_[block_at_[block.first]]);
     for (uint32_t i = block.first; i < block.behind; i = next(i)) {
       const ir::Unit& unit = code_[i];
       const Opcode op = unit.opcode();
       if (stores_through(op)) targets_[i] = at(unit.a);
-      if (op == Opcode::COPY) sources_[i] = at(unit.b);
+      if (op == Opcode::COPY || (walks && loads_through(op))) sources_[i] = at(unit.b);
       if (op == Opcode::NATIVE && native_writes(unit)) targets_[i] = at(unit.a * 8u);
       if (is_call(op) || op == Opcode::NATIVE) made_by.clear();  // the next frame is used
       if (makes_address(unit)) made_by.set(unit.a, i);
@@ -167,8 +190,9 @@ void Facts::killed(uint32_t i, std::vector<uint32_t>& out) const {
 void Facts::seen(uint32_t i, std::vector<uint32_t>& out) const {
   const Opcode op = code_[i].opcode();
   for (const InPlace& here : bodies_at(i)) used_by_body(here.pou, here.body->effects.reads, out);
-  if (op == Opcode::COPY) touched(*sources_.find(i), out);
-  if (op < Opcode::LD_B || op > Opcode::LD_F64) return;
+  const Reach* const source = sources_.find(i);
+  if (source != nullptr) return touched(*source, out);
+  if (!loads_through(op)) return;
   const Reach* const found = reach_.find(code_[i].b);
   touched(found == nullptr ? Reach{true, false, {}} : *found, out);
 }

@@ -2,47 +2,24 @@
 // the interpreter has them.
 #include <gtest/gtest.h>
 
-#include "tests/unit/exec/machine.h"
 #include "tests/unit/exec/source_image.h"
+#include "tests/unit/exec/stops.h"
 #include "vm/native/make_function.h"
 #include "vm/native/program.h"
 
 namespace {
 
 using sample::build;
-using sample::Machine;
 using sample::Optimised;
-
-struct Stop {
-  vm::Exit exit;
-  uint64_t fuel;
-  std::string state;
-  uint32_t unit;  // of a trap
-  friend bool operator==(const Stop&, const Stop&) = default;
-};
-
-// Three scans, each in slices.
-std::vector<Stop> stops(const ir::Image& image, vm::Tier tier, uint64_t slice) {
-  Machine machine(image, {.tier = tier});
-  std::vector<Stop> out;
-  for (int scan = 0; scan < 3; ++scan) {
-    machine.start();
-    for (vm::Exit exit = vm::Exit::kSuspended; exit == vm::Exit::kSuspended;) {
-      exit = machine.execution().run(slice);
-      const bool trapped = exit == vm::Exit::kTrap;
-      out.push_back({exit, machine.execution().fuel_used(), machine.state(),
-                     trapped ? machine.execution().trap().unit : 0});
-    }
-  }
-  return out;
-}
+using sample::stops;
 
 void compare(const std::string& source) {
   for (const Optimised optimised : {Optimised::kNo, Optimised::kYes}) {
     const ir::Image image = build(source, nullptr, optimised);
     for (const uint64_t slice :
          {1, 2, 3, 4, 5, 7, 8, 9, 12, 15, 16, 17, 18, 31, 33, 100, 100'000}) {
-      EXPECT_EQ(stops(image, vm::Tier::kInterpreter, slice), stops(image, vm::Tier::kNative, slice))
+      EXPECT_EQ(stops(image, {.tier = vm::Tier::kInterpreter}, slice),
+                stops(image, {.tier = vm::Tier::kNative}, slice))
           << slice << source;
     }
   }
@@ -113,6 +90,19 @@ FUNCTION Sum : LINT VAR i : INT; END_VAR
   FOR i := 1 TO 40 DO p[i].b := p[i].b + i; Sum := Sum * 3 + p[i].b + p[i].a; END_FOR;
 END_FUNCTION
 PROGRAM Main VAR s : LINT; END_VAR s := s + Sum(); END_PROGRAM)");
+}
+
+TEST(NativeTurns, AnInterruptedLoopFindsAllOfAValueThatAVariableHasAPartOf) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  compare(R"(
+FUNCTION Parts : UDINT VAR_INPUT n : UDINT; END_VAR
+VAR a : ARRAY[0..19] OF BYTE; i : INT; s : UDINT; part : UINT; END_VAR
+  s := 16#A13BC790 + n;
+  part := UDINT_TO_UINT(s);
+  FOR i := 0 TO 9 DO a[i] := UINT_TO_BYTE(part); END_FOR;
+  Parts := s + part + a[3];
+END_FUNCTION
+PROGRAM Main VAR r, n : UDINT; END_VAR n := n + 1; r := r + Parts(n); END_PROGRAM)");
 }
 
 TEST(NativeTurns, ACheckThatFailsInOneOfThemGivesBackTheOthersFuel) {

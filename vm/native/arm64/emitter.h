@@ -119,6 +119,10 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
   // Nobody builds these for this machine (host.h).
   void resolve(const Node&, const Step&) { a_.trap(); }
   void move_handle(const Node&, const Step&) { a_.trap(); }
+  void reach(const Node&, const Step&) { a_.trap(); }
+  void reach_part(const Node&, const Step&) { a_.trap(); }
+  void handle_at(const Node&, const Step&) { a_.trap(); }
+  void store_handle(const Address&, uint8_t) { a_.trap(); }
 
   // emit_float.cc
   void floating(const Node& node, const Step& step);

@@ -39,11 +39,11 @@ void emit_ask_for_handle(Assembler& a, Label label) {
   a.ret();
 }
 
-Address Emitter::known(const Node& n, size_t member) const {
-  return context(offsetof(Context, reaches) + n.site * sizeof(KnownReach) + member);
+Address Emitter::known(uint8_t site, size_t member) const {
+  return context(offsetof(Context, reaches) + site * sizeof(KnownReach) + member);
 }
 
-#define KNOWN(member) known(n, offsetof(KnownReach, member))
+#define KNOWN(member) known(n.site, offsetof(KnownReach, member))
 
 // An exit may need what lies in the result's register, so that is written last.
 void Emitter::resolve(const Node& n, const Step& step) {
@@ -98,12 +98,66 @@ void Emitter::move_handle(const Node& n, const Step& step) {
   a_.bind(handle_stubs_.back().back);
 }
 
+// Before the first byte, past the end or in another variable: it is asked for.
+void Emitter::reach(const Node& n, const Step& step) {
+  const uint8_t handle = integer_register(step.in[0]);
+  const uint8_t to = integer_register(step.result);
+  handle_stubs_.push_back({&n, a_.label(), a_.label(), 0, handle, {}, to});
+  a_.move(kScratch, handle);
+  a_.alu(Alu::kSub, kScratch, Operand::of(KNOWN(begin)), 8);
+  a_.alu(Alu::kCmp, kScratch, Operand::of(KNOWN(size)), 8);
+  a_.jump_if(Condition::kAboveOrEqual, handle_stubs_.back().label);
+  a_.move(to, kScratch);
+  a_.bind(handle_stubs_.back().back);
+}
+
+void Emitter::reach_part(const Node& n, const Step& step) {
+  a_.load(integer_register(step.result), known(n.site, n.imm), n.width);
+}
+
+namespace {
+
+constexpr uint32_t kOnePast = uint32_t{1} << ir::kSegmentBits;  // of the upper half
+
+}  // namespace
+
+void Emitter::handle_at(const Node& n, const Step& step) {
+  const uint8_t to = integer_register(step.result);
+  const Label inside = a_.label();
+  a_.move(kScratch, integer_register(step.in[0]));
+  a_.alu(Alu::kCmp, kScratch, Operand::of(KNOWN(size)), 8);
+  a_.move(to, kScratch);
+  a_.jump_if(Condition::kNotEqual, inside);
+  a_.move_imm(kScratch, uint64_t{kOnePast} << 32);
+  a_.alu(Alu::kAdd, to, Operand::of(kScratch), 8);
+  a_.bind(inside);
+  a_.alu(Alu::kAdd, to, Operand::of(KNOWN(begin)), 8);
+}
+
 #undef KNOWN
+
+// Of the distance in the scratch register.
+void Emitter::store_handle(const Address& to, uint8_t site) {
+  const Operand begin = Operand::of(known(site, offsetof(KnownReach, begin)));
+  const Label inside = a_.label();
+  a_.alu(Alu::kAdd, kScratch, begin, 8);
+  a_.store(to, kScratch, 8);
+  a_.alu(Alu::kSub, kScratch, begin, 8);
+  a_.alu(Alu::kCmp, kScratch, Operand::of(known(site, offsetof(KnownReach, size))), 8);
+  a_.jump_if(Condition::kNotEqual, inside);
+  Address upper = to;
+  upper.disp += 4;
+  a_.alu_imm(Alu::kAdd, Operand::of(upper), kOnePast, 4);
+  a_.bind(inside);
+}
 
 void Emitter::own_stubs() {
   for (const HandleStub& stub : handle_stubs_) {
     const Node& n = *stub.node;
     const bool resolves = n.op == Op::kResolve;
+    const auto function = resolves                   ? &resolve_for_code
+                          : n.op == Op::kMoveHandle ? &move_for_code
+                                                    : &reach_for_code;
     const auto push = [&](uint64_t bits) {
       a_.move_imm(kScratch, bits);
       a_.push(kScratch);
@@ -112,13 +166,13 @@ void Emitter::own_stubs() {
     a_.push(stub.handle);
     if (resolves) {
       push(n.imm);
-    } else if (stub.bytes.kind == Place::kConstant) {
+    } else if (stub.bytes.kind != Place::kRegister) {
       push(stub.bytes.bits);
     } else {
       a_.push(integer_register(stub.bytes));
     }
     push(n.site);
-    push(reinterpret_cast<uintptr_t>(resolves ? &resolve_for_code : &move_for_code));
+    push(reinterpret_cast<uintptr_t>(function));
     a_.call(shared_.ask_for_handle);
     a_.alu_imm(Alu::kAdd, Operand::of(kRsp), 24, 8);
     a_.pop(kScratch);

@@ -79,6 +79,10 @@ void Emitter::multiply(const Node& n, const Step& step) {
   const uint8_t width = at_least_four(n.width);
   const Place& b = step.in[1];
   if (b.kind == Place::kConstant) {
+    // An address is there two cycles earlier.
+    if (b.bits == 3 || b.bits == 5 || b.bits == 9) {
+      return a_.address(to, {a, a, static_cast<uint8_t>(b.bits - 1), true, 0}, width);
+    }
     return a_.multiply_imm(to, Operand::of(a), field(b.bits, n.width), width);
   }
   const Operand right = operand(n, step, 1);

@@ -71,7 +71,7 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
     Label back;
     Label exit;  // of kResolve
     uint8_t handle;
-    Place bytes;  // of kMoveHandle
+    Place bytes;  // of kMoveHandle; nowhere: none
     uint8_t result;
   };
 
@@ -120,7 +120,11 @@ class Emitter : public FunctionEmitter<Emitter, Registers> {
   // emit_handles.cc
   void resolve(const Node& node, const Step& step);
   void move_handle(const Node& node, const Step& step);
-  Address known(const Node& node, size_t member) const;
+  void reach(const Node& node, const Step& step);
+  void reach_part(const Node& node, const Step& step);
+  void handle_at(const Node& node, const Step& step);
+  void store_handle(const Address& to, uint8_t site);
+  Address known(uint8_t site, size_t member) const;
   void own_stubs();
 
   // emit_float.cc

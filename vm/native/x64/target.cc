@@ -68,6 +68,7 @@ Demands X64Target::demands(const Function& f, const Node& node) const {
       break;
     case Op::kResolve:
     case Op::kMoveHandle:
+    case Op::kReach:
       d.shares = 0;  // what it is computed of is asked for again
       break;
     case Op::kHelper:

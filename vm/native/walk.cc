@@ -1,0 +1,702 @@
+// Pointers that walk: what a loop follows is a pointer from before it, or one that each turn moves.
+// Such a pointer stays in its variable, or the loop is left; so the variable is looked for once, and
+// the pointer is a distance from its first byte, which is compared with its size (docs/adr/0048).
+#include <algorithm>
+#include <unordered_map>
+
+#include "ir/types/handle.h"
+#include "vm/exec/context.h"
+#include "vm/native/loops.h"
+
+namespace vm::native {
+namespace {
+
+constexpr size_t kMostQuestions = 16;  // in front of one loop: variables by pointers
+
+// What handles of a loop are called behind it.
+struct Renamed {
+  Val to = kNone;
+  Block head = 0;
+  Block last = 0;
+};
+using Renames = std::unordered_map<Val, Renamed>;
+
+class Walk {
+ public:
+  Walk(Function& f, const Facts& facts, uint32_t loop)
+      : f_(f), facts_(facts), number_(loop), loop_(f.loops[loop]), front_(loop_.head - 1) {}
+
+  // Does every pointer that the loop follows come from before it, or is one that the loop moves?
+  bool find() {
+    for (Block b = loop_.head; b <= loop_.last; ++b) {
+      for (const uint32_t number : f_.blocks[b].nodes) {
+        const Node& n = f_.nodes[number];
+        if (n.op == Op::kCall || n.op == Op::kEnter) return false;
+        if (n.op != Op::kResolve && n.op != Op::kMoveHandle) continue;
+        if (n.exit == kNone || walker_of(n.in[0]) == kNone) return false;
+        if (n.op == Op::kMoveHandle) walker_of(n.result);
+        if (n.op == Op::kResolve) resolved_.push_back(n.result);
+      }
+    }
+    if (resolved_.empty()) return true;
+    for (const Walker& w : walkers_) {
+      if (w.param == kNone) continue;
+      bool same = true;
+      each_turn([&](End& end) { same &= walker_of(end.args[0][w.param]) == index_of(w); });
+      if (!same) return false;
+    }
+    find_questions();
+    return walkers_.size() <= kLoopReaches &&
+           walkers_.size() * questions_.size() <= kMostQuestions;
+  }
+
+  // `uses`: by value.
+  void change(const std::vector<uint32_t>& uses, Renames& renames) {
+    if (resolved_.empty()) return;
+    sure_ = every_turn(f_, loop_);
+    find_steps(uses);
+    for (Walker& w : walkers_) begin(w);
+    for (Block b = loop_.head; b <= loop_.last; ++b) block(b);
+    each_turn([&](End& end) {
+      for (const Walker& w : walkers_) {
+        if (w.param != kNone) end.args[0][w.param] = distance_.at(end.args[0][w.param]);
+      }
+    });
+    slots();
+    behind(renames);
+  }
+
+ private:
+  struct Walker {
+    Val handle = kNone;      // in the loop
+    uint32_t param = kNone;  // of the head; kNone: it stays what it is
+    uint8_t site = 0;
+    Val first = kNone;  // data address of the variable
+    Val place = kNone;  // the same, of the machine
+    Val size = kNone;
+    Val named = kNone;  // what the distance adds to for comparisons of handles
+    std::vector<std::pair<uint64_t, Val>> limits;  // size less so many bytes, at least 0
+  };
+  // A stretch of variables that the loop names.
+  struct Question {
+    MemBase base = MemBase::kSelf;
+    uint64_t begin = 0;
+    uint64_t end = 0;
+  };
+
+  uint32_t index_of(const Walker& w) const { return static_cast<uint32_t>(&w - walkers_.data()); }
+  bool is_inside(Val v) const { return !f_.values[v].constant && f_.values[v].block >= loop_.head; }
+
+  template <class Visit>
+  void each_turn(Visit visit) {
+    for (Block b = loop_.head; b <= loop_.last; ++b) {
+      End& end = f_.blocks[b].end;
+      if (end.kind == EndKind::kLoop && end.target[0] == loop_.head) visit(end);
+    }
+  }
+
+  // --- what is followed -------------------------------------------------------------
+
+  uint32_t walker_of(Val v) {
+    const auto known = walker_.find(v);
+    if (known != walker_.end()) return known->second;
+    return walker_[v] = find_walker(v);
+  }
+
+  uint32_t find_walker(Val v) {
+    const Value& value = f_.values[v];
+    if (value.constant || value.width != 8 || value.floating) return kNone;
+    if (!is_inside(v)) return add_walker(v, kNone);
+    if (value.node == kNone) {
+      const std::vector<Val>& params = f_.blocks[value.block].params;
+      const auto at = std::find(params.begin(), params.end(), v);
+      if (at == params.end()) return kNone;
+      const auto index = static_cast<uint32_t>(at - params.begin());
+      if (value.block == loop_.head) return add_walker(v, index);
+      return walker_of_all_ways(value.block, index);
+    }
+    const Node& n = f_.nodes[value.node];
+    switch (n.op) {
+      case Op::kMoveHandle:
+        return walker_of(n.in[0]);
+      case Op::kSelect:
+        return same(walker_of(n.in[1]), walker_of(n.in[2]));
+      case Op::kSelectCmp:
+        return same(walker_of(n.in[0]), walker_of(n.in[1]));
+      default:
+        return kNone;
+    }
+  }
+
+  static uint32_t same(uint32_t a, uint32_t b) { return a == b ? a : kNone; }
+
+  uint32_t walker_of_all_ways(Block block, uint32_t param) {
+    uint32_t one = kNone;
+    for (Block b = loop_.head; b < block; ++b) {
+      const End& end = f_.blocks[b].end;
+      for (uint32_t i = 0; i < 2; ++i) {
+        if (end.target[i] != block) continue;
+        const uint32_t found = walker_of(end.args[i][param]);
+        if (found == kNone || (one != kNone && found != one)) return kNone;
+        one = found;
+      }
+    }
+    return one;
+  }
+
+  uint32_t add_walker(Val handle, uint32_t param) {
+    Walker w;
+    w.handle = handle;
+    w.param = param;
+    w.site = static_cast<uint8_t>(kKnownReaches + walkers_.size());
+    walkers_.push_back(w);
+    return static_cast<uint32_t>(walkers_.size() - 1);
+  }
+
+  // --- what they must not lead to ---------------------------------------------------
+
+  // Loads may see what a register has instead of memory; stores may change whatever the loop names.
+  void find_questions() {
+    std::vector<uint32_t> named = facts_.deferred(number_);
+    if (stores()) {
+      const std::vector<uint32_t>& reads = facts_.reads(number_);
+      named.insert(named.end(), loop_.modified.begin(), loop_.modified.end());
+      named.insert(named.end(), reads.begin(), reads.end());
+      for (const Reload& reload : f_.blocks[front_].reloads) named.push_back(reload.variable);
+    }
+    std::erase_if(named, [&](uint32_t v) {
+      return f_.variables[v].slot || f_.variables[v].constant;
+    });
+    std::sort(named.begin(), named.end(), [&](uint32_t a, uint32_t b) {
+      const Variable& x = f_.variables[a];
+      const Variable& y = f_.variables[b];
+      return x.base != y.base ? x.base < y.base : x.offset < y.offset;
+    });
+    for (const uint32_t v : named) {
+      const Variable& variable = f_.variables[v];
+      const uint64_t end = uint64_t{variable.offset} + variable.width;
+      if (!questions_.empty() && questions_.back().base == variable.base &&
+          variable.offset <= questions_.back().end) {
+        questions_.back().end = std::max(questions_.back().end, end);
+      } else {
+        questions_.push_back({variable.base, variable.offset, end});
+      }
+    }
+  }
+
+  // Is an address wanted by anything but loads?
+  bool stores() const {
+    const auto is_resolved = [&](Val v) {
+      return std::find(resolved_.begin(), resolved_.end(), v) != resolved_.end();
+    };
+    for (Block b = loop_.head; b <= loop_.last; ++b) {
+      for (const uint32_t number : f_.blocks[b].nodes) {
+        const Node& n = f_.nodes[number];
+        if (n.op != Op::kLoad && is_resolved(n.mem.index)) return true;
+        if (std::any_of(std::begin(n.in), std::end(n.in), is_resolved)) return true;
+      }
+    }
+    return false;
+  }
+
+  // --- in front of the loop ---------------------------------------------------------
+
+  Val constant(uint64_t bits, uint8_t width) {
+    f_.values.push_back({false, width, true, bits, kNone, 0});
+    return static_cast<Val>(f_.values.size() - 1);
+  }
+  uint32_t made(Node n, Block b) {
+    n.unit = unit_;
+    const auto number = static_cast<uint32_t>(f_.nodes.size());
+    if (n.op != Op::kExitIf && n.result == kNone) {
+      n.result = static_cast<Val>(f_.values.size());
+      f_.values.push_back({false, n.width, false, 0, number, b});
+    }
+    f_.nodes.push_back(n);
+    return number;
+  }
+  Val in_front(Op op, uint8_t width, Val a, Val b = kNone) {
+    Node n;
+    n.op = op;
+    n.width = width;
+    n.in[0] = a;
+    n.in[1] = b;
+    return in_front(n);
+  }
+  Val in_front(const Node& n) {
+    f_.blocks[front_].nodes.push_back(made(n, front_));
+    return f_.nodes.back().result;
+  }
+  Val part(Val reach, const Walker& w, size_t member, uint8_t width) {
+    Node n;
+    n.op = Op::kReachPart;
+    n.width = width;
+    n.in[0] = reach;
+    n.imm = member;
+    n.site = w.site;
+    return in_front(n);
+  }
+
+  void begin(Walker& w) {
+    unit_ = f_.blocks[front_].unit;
+    std::vector<Val>& args = f_.blocks[front_].end.args[0];
+    const Val handle = w.param == kNone ? w.handle : args[w.param];
+    Node look;
+    look.op = Op::kReach;
+    look.width = 8;
+    look.in[0] = handle;
+    look.site = w.site;
+    const Val distance = in_front(look);
+    const Val home = part(distance, w, offsetof(KnownReach, home), 4);
+    w.size = part(distance, w, offsetof(KnownReach, size), 8);
+    w.first = in_front(Op::kAdd, 4, home, part(distance, w, offsetof(KnownReach, begin), 4));
+    Node place;
+    place.op = Op::kPlace;
+    place.width = 8;
+    place.mem = {MemBase::kData, 1, w.first, 0};
+    w.place = in_front(place);
+    const Val named = in_front(Op::kAnd, 8, handle, constant(ir::kPlaceMask, 8));
+    w.named = in_front(Op::kSub, 8, named, distance);
+    for (const Question& q : questions_) ask(q, w);
+    if (w.param == kNone) {
+      distance_[w.handle] = distance;
+      return;
+    }
+    args[w.param] = distance;
+    distance_[w.handle] = new_param(loop_.head, w.param);
+  }
+
+  // Does the variable of the pointer hold one of these? Its bytes begin so far behind theirs, or
+  // theirs behind its.
+  void ask(const Question& q, const Walker& w) {
+    const uint64_t more = q.end - q.begin - 1;
+    Node address;
+    address.op = Op::kAddr;
+    address.width = 4;
+    address.mem = {q.base, 1, kNone, static_cast<int64_t>(q.begin)};
+    const Val apart = in_front(Op::kSub, 4, in_front(address), w.first);
+    Node question;
+    question.op = Op::kExitIf;
+    question.width = 4;
+    question.cond = Cond::kLtU;
+    question.in[0] = in_front(Op::kAdd, 4, apart, constant(more, 4));
+    question.in[1] = in_front(Op::kAdd, 4, w.size, constant(more, 4));
+    question.exit = static_cast<uint32_t>(f_.exits.size());
+    Exit exit;
+    exit.unit = f_.blocks[front_].unit;
+    exit.slots = f_.blocks[front_].dirty;
+    f_.exits.push_back(std::move(exit));
+    in_front(question);
+  }
+
+  // The parameter is a distance. What still wants the handle gets it at the block's beginning.
+  Val new_param(Block b, uint32_t param) {
+    const Val handle = f_.blocks[b].params[param];
+    const auto distance = static_cast<Val>(f_.values.size());
+    f_.values.push_back({false, 8, false, 0, kNone, b});
+    f_.blocks[b].params[param] = distance;
+    unit_ = f_.blocks[b].unit;
+    f_.blocks[b].nodes.insert(f_.blocks[b].nodes.begin(), handle_at(handle, distance, b));
+    return distance;
+  }
+
+  uint32_t handle_at(Val handle, Val distance, Block b) {
+    Node n;
+    n.op = Op::kHandleAt;
+    n.width = 8;
+    n.in[0] = distance;
+    n.site = walkers_[walker_.at(handle)].site;
+    n.result = handle;
+    const uint32_t number = made(n, b);
+    f_.values[handle].node = number;
+    f_.values[handle].home = kNone;
+    return number;
+  }
+
+  // --- in the loop ------------------------------------------------------------------
+
+  // Null: the value is no pointer that walks.
+  const Walker* walker(Val v) const {
+    const auto found = v == kNone ? walker_.end() : walker_.find(v);
+    return found == walker_.end() || found->second == kNone ? nullptr : &walkers_[found->second];
+  }
+
+  void block(Block b) {
+    if (b != loop_.head) params(b);
+    const std::vector<uint32_t> nodes = std::move(f_.blocks[b].nodes);
+    out_.clear();
+    for (const uint32_t number : nodes) node(number, b);
+    f_.blocks[b].nodes = out_;
+  }
+
+  // Ways forward alone lead here, so what they bring has its distance; but a way that lies behind
+  // has none yet, and there is none.
+  void params(Block b) {
+    for (uint32_t i = 0; i < f_.blocks[b].params.size(); ++i) {
+      const Val handle = f_.blocks[b].params[i];
+      if (walker(handle) == nullptr) continue;
+      distance_[handle] = new_param(b, i);
+      for (Block from = loop_.head; from < b; ++from) {
+        End& end = f_.blocks[from].end;
+        for (uint32_t way = 0; way < 2; ++way) {
+          if (end.target[way] == b) end.args[way][i] = distance_.at(end.args[way][i]);
+        }
+      }
+    }
+  }
+
+  Val append(Op op, uint8_t width, Val a, Val b, Block block) {
+    Node n;
+    n.op = op;
+    n.width = width;
+    n.in[0] = a;
+    n.in[1] = b;
+    out_.push_back(made(n, block));
+    return f_.nodes.back().result;
+  }
+  void leave_if(Cond cond, Val a, Val b, uint32_t exit) {
+    Node n;
+    n.op = Op::kExitIf;
+    n.width = 8;
+    n.cond = cond;
+    n.in[0] = a;
+    n.in[1] = b;
+    n.exit = exit;
+    out_.push_back(made(n, 0));
+  }
+
+  void node(uint32_t number, Block b) {
+    Node& n = f_.nodes[number];
+    unit_ = n.unit;
+    const Walker* const w = walker(n.result);
+    if (n.op == Op::kResolve) return resolve(number, b);
+    if (n.op == Op::kMoveHandle) return move(number, b);
+    if (w != nullptr && (n.op == Op::kSelect || n.op == Op::kSelectCmp)) return select(number, b);
+    if (n.op == Op::kHandleAt) return out_.push_back(number);  // of a parameter
+    const bool names = n.op == Op::kAnd && walker(n.in[0]) != nullptr &&
+                       f_.values[n.in[1]].constant && f_.values[n.in[1]].bits == ir::kPlaceMask;
+    if (names) {
+      n.op = Op::kAdd;
+      n.in[1] = walker(n.in[0])->named;
+      n.in[0] = distance_.at(n.in[0]);
+    }
+    const auto address = addresses_.find(n.mem.index);
+    if (address != addresses_.end() && n.mem.base == MemBase::kData && n.mem.scale == 1 &&
+        (n.op == Op::kLoad || n.op == Op::kStore)) {
+      const Address& at = address->second;
+      n.mem = {MemBase::kPointer, 1, at.distance, n.mem.disp + at.bytes, at.place};
+    }
+    out_.push_back(number);
+  }
+
+  // A distance from here on does not leave so many bytes more behind it.
+  Val limit_of(uint32_t walker, uint64_t more) {
+    Walker& w = walkers_[walker];
+    if (more == 0) return w.size;
+    for (const auto& [bytes, limit] : w.limits) {
+      if (bytes == more) return limit;
+    }
+    const Val bytes = constant(more, 8);
+    Node n;
+    n.op = Op::kSelectCmp;
+    n.width = 8;
+    n.from = 8;
+    n.cond = Cond::kGtU;
+    n.in[0] = in_front(Op::kSub, 8, w.size, bytes);
+    n.in[1] = in_front(Op::kSub, 8, w.size, w.size);
+    n.in[2] = w.size;
+    n.in[3] = bytes;
+    w.limits.push_back({more, in_front(n)});
+    return w.limits.back().second;
+  }
+
+  void resolve(uint32_t number, Block b) {
+    const Node n = f_.nodes[number];
+    const uint32_t w = walker_.at(n.in[0]);
+    const Val distance = distance_.at(n.in[0]);
+    const auto bytes = static_cast<uint32_t>(n.imm);
+    const auto last = bytes + (n.imm >> 32) - 1;
+    const auto step = steps_.find(n.in[0]);
+    leave_if(Cond::kGeU, distance, limit_of(w, last), step == steps_.end() ? n.exit : step->second);
+    if (step != steps_.end()) f_.exits[n.exit].slots.clear();
+    covered_.push_back({distance, last + 1, b});
+    addresses_[n.result] = {distance, walkers_[w].place, bytes};
+    // For what is neither load nor store.
+    Node sum;
+    sum.op = Op::kAdd;
+    sum.width = 4;
+    sum.in[0] = walkers_[w].first;
+    sum.in[1] = distance;
+    if (bytes != 0) sum.in[0] = append(Op::kAdd, 4, sum.in[0], constant(bytes, 4), b);
+    sum.result = n.result;
+    const uint32_t made_at = made(sum, b);
+    f_.values[n.result].node = made_at;
+    out_.push_back(made_at);
+  }
+
+  // Have so many bytes behind the distance been asked for already?
+  bool is_covered(Val distance, int64_t bytes, Block b) const {
+    if (bytes < 0) return false;
+    return std::any_of(covered_.begin(), covered_.end(), [&](const Covered& c) {
+      return c.distance == distance && c.bytes >= static_cast<uint64_t>(bytes) &&
+             (c.block == b || std::find(sure_.begin(), sure_.end(), c.block) != sure_.end());
+    });
+  }
+
+  // p[i]: a handle that is made to be resolved at once needs no question of its own; where the one
+  // of the RESOLVE is not answered, the interpreter makes it.
+  void find_steps(const std::vector<uint32_t>& uses) {
+    for (Block b = loop_.head; b <= loop_.last; ++b) {
+      Val moved = kNone;
+      uint32_t exit = kNone;
+      for (const uint32_t number : f_.blocks[b].nodes) {
+        const Node& n = f_.nodes[number];
+        if (n.op == Op::kMoveHandle) {
+          moved = n.result;
+          exit = n.exit;
+        } else if (n.op == Op::kResolve && n.in[0] == moved && moved != kNone) {
+          const std::vector<SlotValue>& kept = f_.exits[n.exit].slots;
+          const auto own = std::count_if(kept.begin(), kept.end(), [&](const SlotValue& slot) {
+            return slot.value == moved;
+          });
+          if (uses[moved] == 1 + static_cast<uint32_t>(own)) steps_[moved] = exit;
+          moved = kNone;
+        } else if (!is_operation(n) && n.op != Op::kLoad) {
+          moved = kNone;
+        }
+      }
+    }
+  }
+
+  void move(uint32_t number, Block b) {
+    const Node n = f_.nodes[number];
+    const Walker& w = *walker(n.in[0]);
+    const Val from = distance_.at(n.in[0]);
+    Val by = n.in[1];
+    int64_t bytes = -1;
+    if (f_.values[by].constant) {
+      bytes = static_cast<int32_t>(f_.values[by].bits);
+      by = constant(static_cast<uint64_t>(bytes), 8);
+    } else {
+      Node wide;
+      wide.op = Op::kSext;
+      wide.width = 8;
+      wide.from = 4;
+      wide.in[0] = by;
+      out_.push_back(made(wide, b));
+      by = f_.nodes.back().result;
+    }
+    const Val to = append(Op::kAdd, 8, from, by, b);
+    distance_[n.result] = to;
+    if (steps_.count(n.result) != 0) return;
+    if (!is_covered(from, bytes, b)) leave_if(Cond::kGtU, to, w.size, n.exit);
+    out_.push_back(handle_at(n.result, to, b));
+  }
+
+  void select(uint32_t number, Block b) {
+    Node n = f_.nodes[number];
+    const uint32_t first = n.op == Op::kSelect ? 1 : 0;
+    for (uint32_t i = first; i < first + 2; ++i) n.in[i] = distance_.at(n.in[i]);
+    const Val handle = n.result;
+    n.result = kNone;
+    out_.push_back(made(n, b));
+    distance_[handle] = f_.nodes.back().result;
+    out_.push_back(handle_at(handle, distance_[handle], b));
+  }
+
+  // --- when it is left --------------------------------------------------------------
+
+  void slots() {
+    for (Block b = loop_.head; b <= loop_.last; ++b) {
+      for (const uint32_t n : f_.blocks[b].nodes) slots(f_.nodes[n].exit);
+      slots(f_.blocks[b].end.exit);
+    }
+  }
+  void slots(uint32_t exit) {
+    if (exit == kNone) return;
+    for (SlotValue& slot : f_.exits[exit].slots) {
+      const Walker* const w = walker(slot.value);
+      if (w == nullptr || slot.site != kNoSite || !is_inside(slot.value)) continue;
+      slot.site = w->site;
+      slot.value = distance_.at(slot.value);
+    }
+  }
+
+  // Where the loop has one way on, handles are made there.
+  void behind(Renames& renames) {
+    Block out = kNone;
+    for (Block b = loop_.head; b <= loop_.last; ++b) {
+      for (const Block to : f_.blocks[b].end.target) {
+        if (to == kNone || (to >= loop_.head && to <= loop_.last)) continue;
+        if (out != kNone && out != to) return;
+        out = to;
+      }
+    }
+    if (out == kNone || out < loop_.head || f_.blocks[out].resumes || has_other_way(out)) return;
+    unit_ = f_.blocks[out].unit;
+    for (uint32_t i = 0; i < f_.blocks[out].params.size(); ++i) param_behind(out, i);
+    std::vector<Val> handles;
+    for (const auto& [handle, distance] : distance_) {
+      const bool inside = is_inside(handle) && f_.values[handle].block <= loop_.last;
+      if (inside && steps_.count(handle) == 0) handles.push_back(handle);
+    }
+    std::sort(handles.begin(), handles.end());
+    for (const Val handle : handles) {
+      const auto renamed = static_cast<Val>(f_.values.size());
+      f_.values.push_back({false, 8, false, 0, kNone, out});
+      Node n;
+      n.op = Op::kHandleAt;
+      n.width = 8;
+      n.in[0] = distance_.at(handle);
+      n.site = walker(handle)->site;
+      n.result = renamed;
+      f_.values[renamed].node = made(n, out);
+      std::vector<uint32_t>& nodes = f_.blocks[out].nodes;
+      nodes.insert(nodes.begin(), f_.values[renamed].node);
+      renames[handle] = {renamed, loop_.head, loop_.last};
+    }
+  }
+
+  bool has_other_way(Block out) const {
+    for (Block b = 0; b < f_.blocks.size(); ++b) {
+      if (b >= loop_.head && b <= loop_.last) continue;
+      for (const Block to : f_.blocks[b].end.target) {
+        if (to == out) return true;
+      }
+    }
+    return false;
+  }
+
+  // What all ways bring is one pointer's: its distance.
+  void param_behind(Block out, uint32_t param) {
+    const auto each = [&](auto visit) {
+      for (Block b = loop_.head; b <= loop_.last; ++b) {
+        for (uint32_t way = 0; way < 2; ++way) {
+          if (f_.blocks[b].end.target[way] == out) visit(f_.blocks[b].end.args[way][param]);
+        }
+      }
+    };
+    uint32_t one = kNone;
+    bool same = true;
+    each([&](Val v) {
+      const auto found = walker_.find(v);
+      const bool walks = found != walker_.end() && is_inside(v);
+      if (one == kNone && walks) one = found->second;
+      same &= walks && found->second == one;
+    });
+    if (!same || one == kNone) return;
+    walker_[f_.blocks[out].params[param]] = one;
+    new_param(out, param);
+    each([&](Val& v) { v = distance_.at(v); });
+  }
+
+  struct Address {
+    Val distance = kNone;
+    Val place = kNone;
+    uint32_t bytes = 0;
+  };
+
+  struct Covered {
+    Val distance = kNone;
+    uint64_t bytes = 0;
+    Block block = 0;
+  };
+
+  Function& f_;
+  const Facts& facts_;
+  uint32_t number_;
+  Loop loop_;
+  Block front_;
+  uint32_t unit_ = 0;
+  std::vector<Walker> walkers_;
+  std::unordered_map<Val, uint32_t> walker_;  // by handle; kNone: it is none
+  std::unordered_map<Val, Val> distance_;     // by handle
+  std::unordered_map<Val, uint32_t> steps_;   // exits, by handle that is resolved at once
+  std::unordered_map<Val, Address> addresses_;
+  std::vector<Covered> covered_;
+  std::vector<Block> sure_;  // every turn goes through them
+  std::vector<Val> resolved_;
+  std::vector<Question> questions_;
+  std::vector<uint32_t> out_;
+};
+
+}  // namespace
+
+namespace {
+
+std::vector<uint32_t> count_uses(const Function& f) {
+  std::vector<uint32_t> uses(f.values.size(), 0);
+  const auto use = [&](Val v) {
+    if (v != kNone) ++uses[v];
+  };
+  for (const BasicBlock& block : f.blocks) {
+    for (const uint32_t number : block.nodes) {
+      const Node& n = f.nodes[number];
+      for (const Val v : n.in) use(v);
+      use(n.mem.index);
+      use(n.mem.pointer);
+      if (n.exit == kNone) continue;
+      for (const SlotValue& slot : f.exits[n.exit].slots) use(slot.value);
+    }
+    for (const Val v : block.end.in) use(v);
+    for (const std::vector<Val>& args : block.end.args) {
+      for (const Val v : args) use(v);
+    }
+    if (block.end.exit == kNone) continue;
+    for (const SlotValue& slot : f.exits[block.end.exit].slots) use(slot.value);
+  }
+  return uses;
+}
+
+void rename(Function& f, const Renames& renames) {
+  for (Block b = 0; b < f.blocks.size(); ++b) {
+    const auto change = [&](Val& v) {
+      const auto found = renames.find(v);
+      if (found == renames.end()) return;
+      if (b < found->second.head || b > found->second.last) v = found->second.to;
+    };
+    const auto exit = [&](uint32_t number) {
+      if (number == kNone) return;
+      for (SlotValue& slot : f.exits[number].slots) change(slot.value);
+    };
+    BasicBlock& block = f.blocks[b];
+    for (const uint32_t number : block.nodes) {
+      Node& n = f.nodes[number];
+      for (Val& v : n.in) change(v);
+      change(n.mem.index);
+      change(n.mem.pointer);
+      exit(n.exit);
+    }
+    for (Val& v : block.end.in) change(v);
+    for (std::vector<Val>& args : block.end.args) {
+      for (Val& v : args) change(v);
+    }
+    exit(block.end.exit);
+    for (Reload& reload : block.reloads) change(reload.value);
+    for (SlotValue& slot : block.dirty) change(slot.value);
+  }
+}
+
+}  // namespace
+
+bool walk_pointers(Function& f, const Facts& facts, std::vector<uint32_t>& unwalked) {
+  std::vector<Walk> walks;
+  bool all = true;
+  const auto loops = static_cast<uint32_t>(facts.loops().size());
+  for (uint32_t l = 0; l < loops; ++l) {
+    if (!facts.is_walked(l)) continue;
+    walks.emplace_back(f, facts, l);
+    if (walks.back().find()) continue;
+    unwalked.push_back(facts.blocks()[facts.loops()[l].head].first);
+    all = false;
+  }
+  if (!all) return false;
+  if (walks.empty()) return true;
+  const std::vector<uint32_t> uses = count_uses(f);
+  Renames renames;
+  for (Walk& walk : walks) walk.change(uses, renames);
+  if (!renames.empty()) rename(f, renames);
+  return true;
+}
+
+}  // namespace vm::native
