@@ -192,7 +192,8 @@ uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site) 
   if (home && (away == 0 || away == kOnePast)) {
     known = known_reach(*home, handle);
     const uint32_t distance = ir::handle_offset(handle) - known.begin;
-    if (known.home != 0 && known.size != 0 && distance <= known.size) return distance;
+    const bool in_order = known.begin + known.size < uint64_t{1} << 31;  // its handles are
+    if (known.home != 0 && known.size != 0 && distance <= known.size && in_order) return distance;
   }
   constexpr uint64_t kFar = uint64_t{1} << 32;
   const uint64_t begin = handle - kFar;

@@ -96,6 +96,7 @@ class Builder {
   void leave_unless_one_of(const std::vector<ir::TypeId>& kinds, Val type);
   Val target_of(Val type, uint32_t prototype);
   void call_reference();
+  bool handle();
   void resolve();
   void move_handle();
 

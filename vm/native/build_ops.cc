@@ -84,7 +84,7 @@ void Builder::unit(uint32_t number) {
     copy();
   } else if (ir::opcode_row(op).ends) {
     leave();
-  } else {
+  } else if (op != Opcode::HANDLE || !handle()) {
     helper();
   }
 }

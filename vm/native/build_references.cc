@@ -132,6 +132,22 @@ void Builder::resolve() {
   write_a(found);
 }
 
+// Of a place in the own instance or the globals; false: of a local, which is exposed by the handler.
+bool Builder::handle() {
+  if (u_.base_b() != ir::Base::kSelf && u_.base_b() != ir::Base::kGlobal) return false;
+  const bool own = u_.base_b() == ir::Base::kSelf;
+  const Val instance = own ? of_context(offsetof(Context, instance), 4) : zero();
+  const Val row = int_op(Op::kMul, 8, instance, constant(sizeof(AreaEntry), 8, false));
+  const Val areas = of_context(offsetof(Context, areas), 8);
+  const Val segment = of_table(areas, row, offsetof(AreaEntry, segment), 4);
+  Val offset = constant(x_.x(), 4, false);
+  if (!own) {
+    offset = int_op(Op::kSub, 4, offset, of_table(areas, row, offsetof(AreaEntry, data), 4));
+  }
+  write_a(int_op(Op::kOr, 8, int_op(Op::kShl, 8, segment, constant(32, 4, false)), offset));
+  return true;
+}
+
 // By so many bytes, as a constant, or to an element.
 void Builder::move_handle() {
   if (!host::kFollowsHandles) return helper();

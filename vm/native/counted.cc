@@ -108,6 +108,14 @@ uint32_t turns_of(const Function& f, const Loop& loop, const Counted& c, size_t 
 
 }  // namespace
 
+bool is_far_from_the_ends(const Function& f, Val v) {
+  const Value& value = f.values[v];
+  if (value.constant || value.node == kNone) return false;
+  const Node& made = f.nodes[value.node];
+  if (made.op != Op::kAnd || !f.values[made.in[1]].constant) return false;
+  return f.values[made.in[1]].bits < uint64_t{1} << 62;
+}
+
 int64_t limit_of_first(const Counted& c, uint32_t turns) { return -c.step * (int64_t{turns} - 1); }
 
 std::optional<Counted> counted(const Function& f, uint32_t number) {
@@ -122,9 +130,8 @@ std::optional<Counted> counted(const Function& f, uint32_t number) {
   const auto param = std::find(head.params.begin(), head.params.end(), e.in[0]);
   if (param == head.params.end() || f.values[e.in[0]].width != e.width) return std::nullopt;
   const Value& limit = f.values[e.in[1]];
-  if (!limit.constant && (limit.block >= loop.head || limit.width != e.width || e.width == 8)) {
-    return std::nullopt;
-  }
+  if (!limit.constant && (limit.block >= loop.head || limit.width != e.width)) return std::nullopt;
+  if (e.width == 8 && !limit.constant && !is_far_from_the_ends(f, e.in[1])) return std::nullopt;
   Counted c;
   c.loop = number;
   if (!one_way(f, loop, c)) return std::nullopt;

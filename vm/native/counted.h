@@ -29,4 +29,7 @@ std::optional<Counted> counted(const Function& function, uint32_t loop);
 // limit.
 int64_t limit_of_first(const Counted& counted, uint32_t turns);
 
+// Is the value surely a number from 0 on that is far from the largest one?
+bool is_far_from_the_ends(const Function& function, Val v);
+
 }  // namespace vm::native

@@ -1,32 +1,35 @@
 #include "vm/native/unroll.h"
 
-#include "vm/native/counted.h"
+#include <algorithm>
+#include <list>
+
 #include "vm/native/ranges.h"
+#include "vm/native/turn_steps.h"
 
 namespace vm::native {
 namespace {
 
-constexpr int64_t kMostUnrolledBytes = int64_t{1} << 30;
-constexpr uint32_t kNewBlocks = 3;  // of one loop: its head, what takes fuel, the turns
+// Before its turns: the head, two questions for each check that is asked once, what takes fuel.
+uint32_t blocks_in_front(const TurnSteps& steps) {
+  return 2 + 2 * static_cast<uint32_t>(steps.asked_once().size());
+}
 
 // The turns of one loop, in the block `turns_`.
 class Turns {
  public:
-  Turns(Function& f, const Counted& c, Block head) : f_(f), c_(c), head_(head), turns_(head + 2) {
-    copy_.assign(f.values.size(), kNone);
-    base_.assign(f.values.size(), kNone);
-    move_.assign(f.values.size(), 0);
-    same_.assign(f.values.size(), kNone);
-    for (const auto& [param, value] : c.same) same_[param] = real(value);
+  Turns(Function& f, const Counted& c, const TurnSteps& steps, Block head)
+      : f_(f), c_(c), steps_(steps), head_(head), turns_(head + blocks_in_front(steps)) {
     const Loop& old = f.loops[c.loop];
     for (const Val param : f.blocks[old.head].params) {
       Value value = f.values[param];
       value.block = head;
       f.blocks[head].params.push_back(static_cast<Val>(f.values.size()));
       copy_[param] = static_cast<Val>(f.values.size());
+      if (steps.of(param) != 0) base_[param] = copy_[param];
       f.values.push_back(value);
     }
     limit();
+    questions();
     const Block loop_head = old.head;
     for (uint32_t turn = 0; turn < c.turns; ++turn) {
       for (const uint32_t n : c.nodes) node(n, turn);
@@ -39,9 +42,10 @@ class Turns {
   }
 
  private:
-  Val real(Val v) const { return v < same_.size() && same_[v] != kNone ? same_[v] : v; }
+  Val real(Val v) const { return steps_.real(v); }
   Val now(Val v) const {
-    return v == kNone || v >= copy_.size() || copy_[v] == kNone ? v : copy_[v];
+    const auto found = copy_.find(v);
+    return found == copy_.end() ? v : found->second;
   }
   Val constant(int64_t number, uint8_t width) {
     const uint64_t bits = static_cast<uint64_t>(number) & ~uint64_t{0} >> (64 - 8 * width);
@@ -50,12 +54,19 @@ class Turns {
   }
   Val append(Node made, Block to) {
     made.unit = f_.blocks[to].unit;
-    made.width = 8;
     made.result = static_cast<Val>(f_.values.size());
-    f_.values.push_back({false, 8, false, 0, static_cast<uint32_t>(f_.nodes.size()), to});
+    f_.values.push_back({false, made.width, false, 0, static_cast<uint32_t>(f_.nodes.size()), to});
     f_.blocks[to].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
     f_.nodes.push_back(made);
     return made.result;
+  }
+  Val sum(Val a, Val b, Block to) {
+    Node made;
+    made.op = Op::kAdd;
+    made.width = 8;
+    made.in[0] = a;
+    made.in[1] = b;
+    return append(made, to);
   }
 
   // All turns are done when the last of them is within the limit.
@@ -70,34 +81,71 @@ class Turns {
       return;
     }
     const Block front = head_ - 1;
-    Node wide;
-    wide.op = Op::kSext;
-    wide.from = limit.width;
-    wide.in[0] = end.in[0];
-    end.in[0] = append(wide, head_);
+    Val wide_limit = c_.limit;
+    if (limit.width != 8) {
+      Node wide;
+      wide.op = Op::kSext;
+      wide.width = 8;
+      wide.from = limit.width;
+      wide.in[0] = end.in[0];
+      end.in[0] = append(wide, head_);
+      wide.in[0] = c_.limit;
+      wide_limit = append(wide, front);
+      end.width = 8;
+    }
+    end.in[1] = sum(wide_limit, constant(limit_of_first(c_, c_.turns), 8), front);
+  }
+
+  // Checks that the first and the last turn must pass; else the loop itself does all of it.
+  void questions() {
+    Block at = head_ + 1;
+    for (const uint32_t number : steps_.asked_once()) {
+      const Val first = in_first_turn(f_.nodes[number].in[0], at);
+      question(at, number, first);
+      const int64_t way = steps_.of(f_.nodes[number].in[0]) * (int64_t{c_.turns} - 1);
+      question(at + 1, number, sum(first, constant(way, 8), at + 1));
+      at += 2;
+    }
+  }
+  void question(Block at, uint32_t check, Val value) {
+    End& end = f_.blocks[at].end;
+    end.kind = EndKind::kBranch;
+    end.cond = Cond::kLtU;
     end.width = 8;
-    wide.in[0] = c_.limit;
-    Node sum;
-    sum.op = Op::kAdd;
-    sum.in[0] = append(wide, front);
-    sum.in[1] = constant(limit_of_first(c_, c_.turns), 8);
-    end.in[1] = append(sum, front);
+    end.in[0] = value;
+    end.in[1] = real(f_.nodes[check].in[1]);
+    end.target[0] = at + 1;
+    end.target[1] = f_.loops[c_.loop].head;
+  }
+  // Made of parameters and of what is from before the loop.
+  Val in_first_turn(Val v, Block at) {
+    v = real(v);
+    if (steps_.of(v) == 0 || f_.values[v].node == kNone) return now(v);
+    const auto known = asked_.find(v);
+    if (known != asked_.end()) return known->second;
+    Node made = f_.nodes[f_.values[v].node];
+    for (Val& in : made.in) {
+      if (in != kNone) in = in_first_turn(in, at);
+    }
+    return asked_[v] = append(made, at);
   }
 
   void node(uint32_t number, uint32_t turn) {
+    const std::vector<uint32_t>& once = steps_.asked_once();
+    if (std::find(once.begin(), once.end(), number) != once.end()) return;
     Node made = f_.nodes[number];
     for (Val& v : made.in) v = real(v);
     made.mem.index = real(made.mem.index);
-    if (turn == 0) find_move(made);
     const Val was = made.result;
     const Val index = made.mem.index;
     for (Val& v : made.in) v = now(v);
     made.mem.pointer = now(made.mem.pointer);
     made.mem.index = now(index);
-    if (index < base_.size() && base_[index] != kNone) {
-      const int64_t by = move_[index] * made.mem.scale * turn;
+    const auto base = base_.find(index);
+    if (base != base_.end()) {
+      const int64_t by = steps_.of(index) * made.mem.scale * turn;
       if (fits(made.mem, by)) {
-        made.mem.index = base_[index];
+        made.mem.index = base->second;
         made.mem.disp += by;
       }
     }
@@ -110,64 +158,16 @@ class Turns {
       made.result = static_cast<Val>(f_.values.size());
       f_.values.push_back(value);
       copy_[was] = made.result;
-      if (turn == 0 && move_[was] != 0) base_[was] = made.result;
+      if (turn == 0 && steps_.of(was) != 0) base_[was] = made.result;
     }
     f_.blocks[turns_].nodes.push_back(static_cast<uint32_t>(f_.nodes.size()));
     f_.nodes.push_back(made);
   }
 
   static bool fits(const Mem& mem, int64_t by) {
-    const int64_t low = mem.base == MemBase::kData ? 0 : -kMostUnrolledBytes;
-    const int64_t high = mem.base == MemBase::kData ? INT64_C(0xffffffff) : kMostUnrolledBytes;
-    return by >= -kMostUnrolledBytes && by <= kMostUnrolledBytes && mem.disp + by >= low &&
-           mem.disp + by <= high;
-  }
-
-  // By how much the value is another in the next turn; 0: it is the same, or nobody knows.
-  int64_t move_of(Val v) const { return v == kNone || v >= move_.size() ? 0 : move_[v]; }
-  bool is_fixed(Val v) const { return f_.values[v].constant || copy_[v] == kNone; }
-
-  // Sums of 8 bytes: those of the counter's numbers do not wrap, as they are within its limit.
-  void find_move(const Node& n) {
-    if (n.result == kNone || n.width != 8) return;
-    const Val a = n.in[0];
-    const Val b = n.in[1];
-    int64_t& by = move_[n.result];
-    const auto of = [&](Val v) {
-      if (v == c_.counter && f_.values[v].width == 8) return c_.step;
-      return move_of(v);
-    };
-    const auto known = [&](Val v) { return of(v) != 0 || is_fixed(v); };
-    const auto times = [&](uint64_t factor) {
-      int64_t product;
-      const bool wraps = factor > INT32_MAX ||
-                         __builtin_mul_overflow(of(a), static_cast<int64_t>(factor), &product);
-      by = wraps ? 0 : product;
-    };
-    switch (n.op) {
-      case Op::kSext:
-        by = a == c_.counter && n.from == f_.values[a].width ? c_.step : 0;
-        return;
-      case Op::kAdd:
-        if (known(a) && known(b)) by = of(a) + of(b);
-        break;
-      case Op::kSub:
-        if (known(a) && known(b)) by = of(a) - of(b);
-        break;
-      case Op::kAddShifted:
-        if (known(a) && known(b)) by = of(a) + of(b) * (int64_t{1} << n.imm);
-        break;
-      case Op::kShl:
-        if (f_.values[b].constant && f_.values[b].bits < 31)
-          times(uint64_t{1} << f_.values[b].bits);
-        break;
-      case Op::kMul:
-        if (f_.values[b].constant) times(f_.values[b].bits);
-        break;
-      default:
-        break;
-    }
-    if (by < -kMostUnrolledBytes || by > kMostUnrolledBytes) by = 0;
+    const int64_t low = mem.base == MemBase::kData ? 0 : -kMostStep;
+    const int64_t high = mem.base == MemBase::kData ? INT64_C(0xffffffff) : kMostStep;
+    return by >= -kMostStep && by <= kMostStep && mem.disp + by >= low && mem.disp + by <= high;
   }
 
   // (x + 1) + 1: what is between may be wanted by nobody.
@@ -180,7 +180,7 @@ class Turns {
     const Value& first = f_.values[before.in[1]];
     if (!first.constant) return;
     const int64_t sum = as_signed(first.bits, made.width) + as_signed(right.bits, made.width);
-    if (sum < -kMostUnrolledBytes || sum > kMostUnrolledBytes) return;
+    if (sum < -kMostStep || sum > kMostStep) return;
     made.in[0] = before.in[0];
     made.in[1] = constant(sum, made.width);
   }
@@ -196,22 +196,30 @@ class Turns {
 
   Function& f_;
   const Counted& c_;
+  const TurnSteps& steps_;
   Block head_, turns_;
-  std::vector<Val> same_;      // by parameter inside of a turn: what it is
-  std::vector<Val> copy_;      // by value of the loop: in the turn that is made
-  std::vector<Val> base_;      // in the first turn, when each one moves it
-  std::vector<int64_t> move_;  // by how much
+  std::unordered_map<Val, Val> copy_;   // by value of the loop: in the turn that is made
+  std::unordered_map<Val, Val> base_;   // in the first turn, when each one moves it
+  std::unordered_map<Val, Val> asked_;  // in the first turn, for its questions
+};
+
+struct Unrolled {
+  Unrolled(const Function& f, Counted c) : counted(std::move(c)), steps(f, counted) {}
+  Counted counted;
+  TurnSteps steps;
 };
 
 // Makes room in front of the loops' heads, and leads what comes from there to the new ones.
-void insert_blocks(Function& f, const std::vector<Counted>& all) {
+void insert_blocks(Function& f, const std::list<Unrolled>& all) {
   const auto count = static_cast<Block>(f.blocks.size());
   std::vector<Block> place(count);
-  std::vector<bool> has(count, false);
-  for (const Counted& c : all) has[f.loops[c.loop].head] = true;
+  std::vector<uint32_t> room(count, 0);
+  for (const Unrolled& one : all) {
+    room[f.loops[one.counted.loop].head] = blocks_in_front(one.steps) + 1;
+  }
   Block next = 0;
   for (Block b = 0; b < count; ++b) {
-    if (has[b]) next += kNewBlocks;
+    next += room[b];
     place[b] = next++;
   }
   std::vector<BasicBlock> blocks(next);
@@ -221,7 +229,7 @@ void insert_blocks(Function& f, const std::vector<Counted>& all) {
     block = std::move(f.blocks[b]);
     for (Block& to : block.end.target) {
       if (to == kNone) continue;
-      to = place[to] - (has[to] && block.end.kind != EndKind::kLoop ? kNewBlocks : 0);
+      to = place[to] - (block.end.kind != EndKind::kLoop ? room[to] : 0);
     }
   }
   f.blocks = std::move(blocks);
@@ -231,13 +239,14 @@ void insert_blocks(Function& f, const std::vector<Counted>& all) {
   }
 }
 
-void turns_of_loop(Function& f, const Counted& c) {
+void turns_of_loop(Function& f, const Counted& c, const TurnSteps& steps) {
   const Loop old = f.loops[c.loop];
-  const Block head = old.head - kNewBlocks;
+  const Block head = old.head - blocks_in_front(steps) - 1;
+  const Block turns = old.head - 1;
   const auto number = static_cast<uint32_t>(f.loops.size());
   Loop loop = old;
   loop.head = head;
-  loop.last = head + kNewBlocks - 1;
+  loop.last = turns;
   f.loops.push_back(loop);
   for (Block b = loop.head; b <= loop.last; ++b) {
     f.blocks[b].unit = f.blocks[old.head].unit;
@@ -249,16 +258,16 @@ void turns_of_loop(Function& f, const Counted& c) {
   asks.cond = c.stays;
   asks.target[0] = head + 1;
   asks.target[1] = old.head;
-  End& takes = f.blocks[head + 1].end;
+  End& takes = f.blocks[turns - 1].end;
   takes.kind = EndKind::kTakeFuel;
   takes.fuel = c.turns;
-  takes.target[0] = head + 2;
+  takes.target[0] = turns;
   takes.target[1] = old.head;
-  End& again = f.blocks[head + 2].end;
+  End& again = f.blocks[turns].end;
   again.kind = EndKind::kLoop;
   again.target[0] = head;
-  Turns(f, c, head);
-  f.blocks[head].end.args[1] = f.blocks[head + 1].end.args[1] = f.blocks[head].params;
+  Turns(f, c, steps, head);
+  for (Block b = head; b < turns; ++b) f.blocks[b].end.args[1] = f.blocks[head].params;
 }
 
 }  // namespace
@@ -268,14 +277,14 @@ void unroll(Function& f) {
   for (const Loop& loop : f.loops) {
     if (loop.parent != kNone) outer[loop.parent] = true;
   }
-  std::vector<Counted> all;
+  std::list<Unrolled> all;  // they refer to each other
   for (uint32_t l = 0; l < f.loops.size(); ++l) {
     if (outer[l]) continue;
-    if (std::optional<Counted> c = counted(f, l)) all.push_back(std::move(*c));
+    if (std::optional<Counted> c = counted(f, l)) all.emplace_back(f, std::move(*c));
   }
   if (all.empty()) return;
   insert_blocks(f, all);
-  for (const Counted& c : all) turns_of_loop(f, c);
+  for (const Unrolled& one : all) turns_of_loop(f, one.counted, one.steps);
 }
 
 }  // namespace vm::native

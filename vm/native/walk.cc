@@ -2,6 +2,7 @@
 // Such a pointer stays in its variable, or the loop is left; so the variable is looked for once, and
 // the pointer is a distance from its first byte, which is compared with its size (docs/adr/0048).
 #include <algorithm>
+#include <bit>
 #include <unordered_map>
 
 #include "ir/types/handle.h"
@@ -11,6 +12,9 @@
 namespace vm::native {
 namespace {
 
+constexpr uint64_t kOrder = uint64_t{1} << 31;  // offsets are in order with this bit the other way
+// Limits are smaller: nobody else could say so (counted.h).
+constexpr uint64_t kSmall = (uint64_t{1} << 61) - 1;
 constexpr size_t kMostQuestions = 16;  // in front of one loop: variables by pointers
 
 // What handles of a loop are called behind it.
@@ -63,6 +67,7 @@ class Walk {
       }
     });
     slots();
+    count();
     behind(renames);
   }
 
@@ -74,7 +79,9 @@ class Walk {
     Val first = kNone;  // data address of the variable
     Val place = kNone;  // the same, of the machine
     Val size = kNone;
-    Val named = kNone;  // what the distance adds to for comparisons of handles
+    Val distance = kNone;  // where the loop begins
+    Val begin = kNone;     // ... and the place that the handle names there
+    Val named = kNone;     // what distances add to for comparisons of places
     std::vector<std::pair<uint64_t, Val>> limits;  // size less so many bytes, at least 0
   };
   // A stretch of variables that the loop names.
@@ -255,8 +262,9 @@ class Walk {
     place.width = 8;
     place.mem = {MemBase::kData, 1, w.first, 0};
     w.place = in_front(place);
-    const Val named = in_front(Op::kAnd, 8, handle, constant(ir::kPlaceMask, 8));
-    w.named = in_front(Op::kSub, 8, named, distance);
+    w.distance = distance;
+    w.begin = in_front(Op::kAnd, 8, handle, constant(ir::kPlaceMask, 8));
+    w.named = in_front(Op::kSub, 8, w.begin, distance);
     for (const Question& q : questions_) ask(q, w);
     if (w.param == kNone) {
       distance_[w.handle] = distance;
@@ -392,22 +400,25 @@ class Walk {
   // A distance from here on does not leave so many bytes more behind it.
   Val limit_of(uint32_t walker, uint64_t more) {
     Walker& w = walkers_[walker];
-    if (more == 0) return w.size;
     for (const auto& [bytes, limit] : w.limits) {
       if (bytes == more) return limit;
     }
-    const Val bytes = constant(more, 8);
-    Node n;
-    n.op = Op::kSelectCmp;
-    n.width = 8;
-    n.from = 8;
-    n.cond = Cond::kGtU;
-    n.in[0] = in_front(Op::kSub, 8, w.size, bytes);
-    n.in[1] = in_front(Op::kSub, 8, w.size, w.size);
-    n.in[2] = w.size;
-    n.in[3] = bytes;
-    w.limits.push_back({more, in_front(n)});
-    return w.limits.back().second;
+    Val limit = w.size;
+    if (more != 0) {
+      const Val bytes = constant(more, 8);
+      Node n;
+      n.op = Op::kSelectCmp;
+      n.width = n.from = 8;
+      n.cond = Cond::kGtU;
+      n.in[0] = in_front(Op::kSub, 8, w.size, bytes);
+      n.in[1] = in_front(Op::kSub, 8, w.size, w.size);
+      n.in[2] = w.size;
+      n.in[3] = bytes;
+      limit = in_front(n);
+    }
+    limit = in_front(Op::kAnd, 8, limit, constant(kSmall, 8));
+    w.limits.push_back({more, limit});
+    return limit;
   }
 
   void resolve(uint32_t number, Block b) {
@@ -477,7 +488,7 @@ class Walk {
     if (f_.values[by].constant) {
       bytes = static_cast<int32_t>(f_.values[by].bits);
       by = constant(static_cast<uint64_t>(bytes), 8);
-    } else {
+    } else if (!is_within(by, 31)) {
       Node wide;
       wide.op = Op::kSext;
       wide.width = 8;
@@ -493,6 +504,28 @@ class Walk {
     out_.push_back(handle_at(n.result, to, b));
   }
 
+  // Is it a number between -2^bits and 2^bits, whatever it is made of?
+  bool is_within(Val v, uint32_t bits) const {
+    const Value& value = f_.values[v];
+    if (value.constant || value.node == kNone) return false;
+    const Node& n = f_.nodes[value.node];
+    const bool times = (n.op == Op::kMul || n.op == Op::kShl) && f_.values[n.in[1]].constant;
+    switch (n.op) {
+      case Op::kSext:
+      case Op::kZext:
+        return 8u * n.from <= bits;
+      case Op::kMul:
+      case Op::kShl: {
+        if (!times || n.width != 8) return false;
+        const uint64_t by = f_.values[n.in[1]].bits;
+        const uint64_t more = n.op == Op::kShl ? by : static_cast<uint64_t>(std::bit_width(by));
+        return more <= bits && is_within(n.in[0], bits - static_cast<uint32_t>(more));
+      }
+      default:
+        return false;
+    }
+  }
+
   void select(uint32_t number, Block b) {
     Node n = f_.nodes[number];
     const uint32_t first = n.op == Op::kSelect ? 1 : 0;
@@ -502,6 +535,70 @@ class Walk {
     out_.push_back(made(n, b));
     distance_[handle] = f_.nodes.back().result;
     out_.push_back(handle_at(handle, distance_[handle], b));
+  }
+
+  // WHILE p < stop: where the head asks whether a pointer is in front of another one, it asks for a
+  // distance less than that of the other one, as a counter for its limit (counted.h).
+  void count() {
+    End& end = f_.blocks[loop_.head].end;
+    if (end.kind != EndKind::kBranch || end.compare != Op::kCompare || end.width != 8) return;
+    for (uint32_t i = 0; i < 2; ++i) {
+      const Cond cond = i == 0 ? end.cond : swapped(end.cond);
+      const bool strict = cond == Cond::kLtU || cond == Cond::kGeU;
+      if (!strict && cond != Cond::kLeU && cond != Cond::kGtU) continue;
+      const Walker* const w = asked(end.in[i]);
+      const Val other = end.in[1 - i];
+      if (w == nullptr || !to_front(other)) continue;
+      // Of the first byte, seen from what the loop begins with: a pointer that is not walked with
+      // is far behind it.
+      const Val now = in_front(Op::kXor, 8, w->begin, constant(kOrder, 8));
+      const Val own = in_front(Op::kSub, 8, now, w->distance);
+      Val more = in_front(Op::kSub, 8, other, own);
+      if (!strict) more = in_front(Op::kAdd, 8, more, constant(1, 8));
+      Node limit;
+      limit.op = Op::kSelectCmp;
+      limit.width = limit.from = 8;
+      limit.cond = strict ? Cond::kGtS : Cond::kGeS;
+      limit.in[0] = more;
+      limit.in[1] = in_front(Op::kSub, 8, own, own);
+      limit.in[2] = other;
+      limit.in[3] = own;
+      end.in[1] = in_front(Op::kAnd, 8, in_front(limit), constant(kSmall, 8));
+      end.in[0] = distance_.at(w->handle);
+      end.cond = cond == Cond::kLtU || cond == Cond::kLeU ? Cond::kLtS : Cond::kGeS;
+      return;
+    }
+  }
+
+  // Is it the same in each turn? Then it is made in front.
+  bool to_front(Val v) {
+    if (v == kNone || !is_inside(v)) return true;
+    const uint32_t number = f_.values[v].node;
+    if (number == kNone) return false;
+    const Node n = f_.nodes[number];
+    if (!is_operation(n) || n.exit != kNone || walker(v) != nullptr) return false;
+    if (!to_front(n.mem.index) || !to_front(n.mem.pointer)) return false;
+    for (const Val in : n.in) {
+      if (!to_front(in)) return false;
+    }
+    std::erase(f_.blocks[f_.values[v].block].nodes, number);
+    f_.blocks[front_].nodes.push_back(number);
+    f_.values[v].block = front_;
+    return true;
+  }
+
+  // The pointer that each turn begins with, when the value is its place in an order with others.
+  const Walker* asked(Val v) const {
+    if (f_.values[v].constant || f_.values[v].node == kNone) return nullptr;
+    const Node& order = f_.nodes[f_.values[v].node];
+    if (order.op != Op::kXor || f_.values[order.in[0]].node == kNone) return nullptr;
+    if (!f_.values[order.in[1]].constant || f_.values[order.in[1]].bits != kOrder) return nullptr;
+    const Node& place = f_.nodes[f_.values[order.in[0]].node];
+    for (const Walker& w : walkers_) {
+      const bool is_it = place.op == Op::kAdd && place.in[1] == w.named && w.param != kNone;
+      if (is_it && place.in[0] == distance_.at(w.handle)) return &w;
+    }
+    return nullptr;
   }
 
   // --- when it is left --------------------------------------------------------------

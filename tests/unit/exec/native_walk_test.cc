@@ -154,7 +154,23 @@ FUNCTION_BLOCK Block VAR v : ARRAY[0..7] OF BYTE; u : UINT; inner : R_TRIG; END_
     return out + "END_IF; ";
   }
 
+  // Turns that all go one way: several are done at once.
+  std::string straight() {
+    static constexpr const char* kDone[] = {
+        "s := s * 3 + p^; ", "q^ := p^; q := q + 1; ", "s := s + p[1]; ",     "p^ := one; ",
+        "w^ := TO_WORD(s); ", "w := w + 2; ",           "x := x + p[i] + w^; ", "a[i] := b[i] + q^; "};
+    static constexpr const char* kWhile[] = {"p < q", "p <= q", "q > p", "q >= p"};
+    std::string body;
+    for (int n = 1 + one_of(3); n > 0; --n) body += any(kDone);
+    const std::string step = "p := p + " + std::to_string(1 + one_of(3)) + "; ";
+    if (one_of(2) == 0) return std::string("  WHILE ") + any(kWhile) + " DO " + body + step + "END_WHILE;\n";
+    body += one_of(2) == 0 ? step : "";
+    const std::string last = one_of(2) == 0 ? number(30) : "k + " + number(30);
+    return "  FOR i := " + number(4) + " TO " + last + " DO " + body + "END_FOR;\n";
+  }
+
   std::string loop() {
+    if (one_of(3) == 0) return straight();
     std::string body;
     const int count = 1 + one_of(5);
     for (int n = 0; n < count; ++n) body += statement(0);
