@@ -48,7 +48,7 @@ endfunction()
 # stc_compile_small(source...): for size rather than for speed in a release build.
 function(stc_compile_small)
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    stc_compile_with(small_headers -Os HEADERS ${STC_COMMON_HEADERS} ${STC_THREAD_HEADERS}
+    stc_compile_with(small_headers -Oz HEADERS ${STC_COMMON_HEADERS} ${STC_THREAD_HEADERS}
                      SOURCES ${ARGN})
   endif()
 endfunction()

@@ -83,6 +83,7 @@ class ByKey {
     const uint32_t number = numbers_.find(key);
     return number == kNone ? nullptr : &all_[number];
   }
+  const T& at(uint64_t key) const { return all_[numbers_.find(key)]; }  // which it has
   const std::vector<T>& all() const { return all_; }
 
  private:

@@ -35,16 +35,16 @@ TurnSteps::TurnSteps(const Function& function, const Counted& counted) : f_(func
 }
 
 Val TurnSteps::real(Val v) const {
-  const auto found = same_.find(v);
-  return found == same_.end() ? v : found->second;
+  const Val* const found = same_.find(v);
+  return found == nullptr ? v : *found;
 }
 
 int64_t TurnSteps::of(Val v) const {
-  const auto found = step_.find(real(v));
-  return found == step_.end() ? 0 : found->second;
+  const int64_t* const found = step_.find(real(v));
+  return found == nullptr ? 0 : *found;
 }
 
-bool TurnSteps::is_fixed(Val v) const { return step_.find(real(v)) == step_.end(); }
+bool TurnSteps::is_fixed(Val v) const { return step_.find(real(v)) == nullptr; }
 
 void TurnSteps::find(const Node& n) {
   if (n.result == kNone || n.width != 8) return;

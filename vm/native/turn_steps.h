@@ -1,10 +1,10 @@
 // By how much values of a counted loop are others in its next turn.
 #pragma once
 
-#include <unordered_map>
 #include <vector>
 
 #include "vm/native/counted.h"
+#include "vm/native/number_table.h"
 
 namespace vm::native {
 
@@ -28,8 +28,8 @@ class TurnSteps {
 
   const Function& f_;
   const Counted& c_;
-  std::unordered_map<Val, int64_t> step_;  // by value that the loop makes
-  std::unordered_map<Val, Val> same_;
+  ByKey<int64_t> step_;  // by value that the loop makes
+  ByKey<uint32_t> same_;
   std::vector<uint32_t> asked_;  // nodes
 };
 

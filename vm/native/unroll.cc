@@ -44,8 +44,8 @@ class Turns {
  private:
   Val real(Val v) const { return steps_.real(v); }
   Val now(Val v) const {
-    const auto found = copy_.find(v);
-    return found == copy_.end() ? v : found->second;
+    const Val* const found = copy_.find(v);
+    return found == nullptr ? v : *found;
   }
   Val constant(int64_t number, uint8_t width) {
     const uint64_t bits = static_cast<uint64_t>(number) & ~uint64_t{0} >> (64 - 8 * width);
@@ -121,13 +121,13 @@ class Turns {
   Val in_first_turn(Val v, Block at) {
     v = real(v);
     if (steps_.of(v) == 0 || f_.values[v].node == kNone) return now(v);
-    const auto known = asked_.find(v);
-    if (known != asked_.end()) return known->second;
+    if (const Val* const known = asked_.find(v)) return *known;
     Node made = f_.nodes[f_.values[v].node];
     for (Val& in : made.in) {
       if (in != kNone) in = in_first_turn(in, at);
     }
-    return asked_[v] = append(made, at);
+    const Val first = append(made, at);
+    return asked_[v] = first;
   }
 
   void node(uint32_t number, uint32_t turn) {
@@ -141,11 +141,11 @@ class Turns {
     for (Val& v : made.in) v = now(v);
     made.mem.pointer = now(made.mem.pointer);
     made.mem.index = now(index);
-    const auto base = base_.find(index);
-    if (base != base_.end()) {
+    const Val* const base = base_.find(index);
+    if (base != nullptr) {
       const int64_t by = steps_.of(index) * made.mem.scale * turn;
       if (fits(made.mem, by)) {
-        made.mem.index = base->second;
+        made.mem.index = *base;
         made.mem.disp += by;
       }
     }
@@ -198,9 +198,9 @@ class Turns {
   const Counted& c_;
   const TurnSteps& steps_;
   Block head_, turns_;
-  std::unordered_map<Val, Val> copy_;   // by value of the loop: in the turn that is made
-  std::unordered_map<Val, Val> base_;   // in the first turn, when each one moves it
-  std::unordered_map<Val, Val> asked_;  // in the first turn, for its questions
+  ByKey<Val> copy_;   // by value of the loop: in the turn that is made
+  ByKey<Val> base_;   // in the first turn, when each one moves it
+  ByKey<Val> asked_;  // in the first turn, for its questions
 };
 
 struct Unrolled {

@@ -3,7 +3,6 @@
 // the pointer is a distance from its first byte, which is compared with its size (docs/adr/0048).
 #include <algorithm>
 #include <bit>
-#include <unordered_map>
 
 #include "ir/types/handle.h"
 #include "vm/exec/context.h"
@@ -23,7 +22,7 @@ struct Renamed {
   Block head = 0;
   Block last = 0;
 };
-using Renames = std::unordered_map<Val, Renamed>;
+using Renames = ByKey<Renamed>;
 
 class Walk {
  public:
@@ -105,9 +104,9 @@ class Walk {
   // --- what is followed -------------------------------------------------------------
 
   uint32_t walker_of(Val v) {
-    const auto known = walker_.find(v);
-    if (known != walker_.end()) return known->second;
-    return walker_[v] = find_walker(v);
+    if (const uint32_t* const known = walker_.find(v)) return *known;
+    const uint32_t found = find_walker(v);
+    return walker_[v] = found;
   }
 
   uint32_t find_walker(Val v) {
@@ -171,24 +170,22 @@ class Walk {
       named.insert(named.end(), reads.begin(), reads.end());
       for (const Reload& reload : f_.blocks[front_].reloads) named.push_back(reload.variable);
     }
-    std::erase_if(named, [&](uint32_t v) {
-      return f_.variables[v].slot || f_.variables[v].constant;
-    });
-    std::sort(named.begin(), named.end(), [&](uint32_t a, uint32_t b) {
-      const Variable& x = f_.variables[a];
-      const Variable& y = f_.variables[b];
-      return x.base != y.base ? x.base < y.base : x.offset < y.offset;
-    });
     for (const uint32_t v : named) {
       const Variable& variable = f_.variables[v];
-      const uint64_t end = uint64_t{variable.offset} + variable.width;
-      if (!questions_.empty() && questions_.back().base == variable.base &&
-          variable.offset <= questions_.back().end) {
-        questions_.back().end = std::max(questions_.back().end, end);
-      } else {
-        questions_.push_back({variable.base, variable.offset, end});
-      }
+      if (variable.slot || variable.constant) continue;
+      add_question({variable.base, variable.offset, uint64_t{variable.offset} + variable.width});
+      if (questions_.size() > kMostQuestions) return;
     }
+  }
+
+  // One with those that it touches.
+  void add_question(Question q) {
+    std::erase_if(questions_, [&](const Question& other) {
+      const bool touches = other.base == q.base && other.begin <= q.end && q.begin <= other.end;
+      if (touches) q = {q.base, std::min(q.begin, other.begin), std::max(q.end, other.end)};
+      return touches;
+    });
+    questions_.push_back(q);
   }
 
   // Is an address wanted by anything but loads?
@@ -267,11 +264,10 @@ class Walk {
     w.named = in_front(Op::kSub, 8, w.begin, distance);
     for (const Question& q : questions_) ask(q, w);
     if (w.param == kNone) {
-      distance_[w.handle] = distance;
-      return;
+      return lies_at(w.handle, distance);
     }
     args[w.param] = distance;
-    distance_[w.handle] = new_param(loop_.head, w.param);
+    lies_at(w.handle, new_param(loop_.head, w.param));
   }
 
   // Does the variable of the pointer hold one of these? Its bytes begin so far behind theirs, or
@@ -321,12 +317,17 @@ class Walk {
     return number;
   }
 
+  void lies_at(Val handle, Val distance) {
+    distance_[handle] = distance;
+    handles_.push_back(handle);
+  }
+
   // --- in the loop ------------------------------------------------------------------
 
   // Null: the value is no pointer that walks.
   const Walker* walker(Val v) const {
-    const auto found = v == kNone ? walker_.end() : walker_.find(v);
-    return found == walker_.end() || found->second == kNone ? nullptr : &walkers_[found->second];
+    const uint32_t* const found = walker_.find(v);
+    return found == nullptr || *found == kNone ? nullptr : &walkers_[*found];
   }
 
   void block(Block b) {
@@ -343,7 +344,7 @@ class Walk {
     for (uint32_t i = 0; i < f_.blocks[b].params.size(); ++i) {
       const Val handle = f_.blocks[b].params[i];
       if (walker(handle) == nullptr) continue;
-      distance_[handle] = new_param(b, i);
+      lies_at(handle, new_param(b, i));
       for (Block from = loop_.head; from < b; ++from) {
         End& end = f_.blocks[from].end;
         for (uint32_t way = 0; way < 2; ++way) {
@@ -388,11 +389,10 @@ class Walk {
       n.in[1] = walker(n.in[0])->named;
       n.in[0] = distance_.at(n.in[0]);
     }
-    const auto address = addresses_.find(n.mem.index);
-    if (address != addresses_.end() && n.mem.base == MemBase::kData && n.mem.scale == 1 &&
+    const Address* const address = addresses_.find(n.mem.index);
+    if (address != nullptr && n.mem.base == MemBase::kData && n.mem.scale == 1 &&
         (n.op == Op::kLoad || n.op == Op::kStore)) {
-      const Address& at = address->second;
-      n.mem = {MemBase::kPointer, 1, at.distance, n.mem.disp + at.bytes, at.place};
+      n.mem = {MemBase::kPointer, 1, address->distance, n.mem.disp + address->bytes, address->place};
     }
     out_.push_back(number);
   }
@@ -427,9 +427,9 @@ class Walk {
     const Val distance = distance_.at(n.in[0]);
     const auto bytes = static_cast<uint32_t>(n.imm);
     const auto last = bytes + (n.imm >> 32) - 1;
-    const auto step = steps_.find(n.in[0]);
-    leave_if(Cond::kGeU, distance, limit_of(w, last), step == steps_.end() ? n.exit : step->second);
-    if (step != steps_.end()) f_.exits[n.exit].slots.clear();
+    const uint32_t* const step = steps_.find(n.in[0]);
+    leave_if(Cond::kGeU, distance, limit_of(w, last), step == nullptr ? n.exit : *step);
+    if (step != nullptr) f_.exits[n.exit].slots.clear();
     covered_.push_back({distance, last + 1, b});
     addresses_[n.result] = {distance, walkers_[w].place, bytes};
     // For what is neither load nor store.
@@ -498,8 +498,8 @@ class Walk {
       by = f_.nodes.back().result;
     }
     const Val to = append(Op::kAdd, 8, from, by, b);
-    distance_[n.result] = to;
-    if (steps_.count(n.result) != 0) return;
+    lies_at(n.result, to);
+    if (steps_.find(n.result) != nullptr) return;
     if (!is_covered(from, bytes, b)) leave_if(Cond::kGtU, to, w.size, n.exit);
     out_.push_back(handle_at(n.result, to, b));
   }
@@ -533,8 +533,8 @@ class Walk {
     const Val handle = n.result;
     n.result = kNone;
     out_.push_back(made(n, b));
-    distance_[handle] = f_.nodes.back().result;
-    out_.push_back(handle_at(handle, distance_[handle], b));
+    lies_at(handle, f_.nodes.back().result);
+    out_.push_back(handle_at(handle, distance_.at(handle), b));
   }
 
   // WHILE p < stop: where the head asks whether a pointer is in front of another one, it asks for a
@@ -632,13 +632,9 @@ class Walk {
     if (out == kNone || out < loop_.head || f_.blocks[out].resumes || has_other_way(out)) return;
     unit_ = f_.blocks[out].unit;
     for (uint32_t i = 0; i < f_.blocks[out].params.size(); ++i) param_behind(out, i);
-    std::vector<Val> handles;
-    for (const auto& [handle, distance] : distance_) {
+    for (const Val handle : handles_) {
       const bool inside = is_inside(handle) && f_.values[handle].block <= loop_.last;
-      if (inside && steps_.count(handle) == 0) handles.push_back(handle);
-    }
-    std::sort(handles.begin(), handles.end());
-    for (const Val handle : handles) {
+      if (!inside || steps_.find(handle) != nullptr) continue;
       const auto renamed = static_cast<Val>(f_.values.size());
       f_.values.push_back({false, 8, false, 0, kNone, out});
       Node n;
@@ -676,10 +672,10 @@ class Walk {
     uint32_t one = kNone;
     bool same = true;
     each([&](Val v) {
-      const auto found = walker_.find(v);
-      const bool walks = found != walker_.end() && is_inside(v);
-      if (one == kNone && walks) one = found->second;
-      same &= walks && found->second == one;
+      const uint32_t* const found = walker_.find(v);
+      const bool walks = found != nullptr && *found != kNone && is_inside(v);
+      if (one == kNone && walks) one = *found;
+      same &= walks && *found == one;
     });
     if (!same || one == kNone) return;
     walker_[f_.blocks[out].params[param]] = one;
@@ -706,10 +702,11 @@ class Walk {
   Block front_;
   uint32_t unit_ = 0;
   std::vector<Walker> walkers_;
-  std::unordered_map<Val, uint32_t> walker_;  // by handle; kNone: it is none
-  std::unordered_map<Val, Val> distance_;     // by handle
-  std::unordered_map<Val, uint32_t> steps_;   // exits, by handle that is resolved at once
-  std::unordered_map<Val, Address> addresses_;
+  ByKey<uint32_t> walker_;    // by handle; kNone: it is none
+  ByKey<Val> distance_;       // by handle
+  std::vector<Val> handles_;  // that have one
+  ByKey<uint32_t> steps_;     // exits, by handle that is resolved at once
+  ByKey<Address> addresses_;  // by what they were
   std::vector<Covered> covered_;
   std::vector<Block> sure_;  // every turn goes through them
   std::vector<Val> resolved_;
@@ -748,9 +745,8 @@ std::vector<uint32_t> count_uses(const Function& f) {
 void rename(Function& f, const Renames& renames) {
   for (Block b = 0; b < f.blocks.size(); ++b) {
     const auto change = [&](Val& v) {
-      const auto found = renames.find(v);
-      if (found == renames.end()) return;
-      if (b < found->second.head || b > found->second.last) v = found->second.to;
+      const Renamed* const found = renames.find(v);
+      if (found != nullptr && (b < found->head || b > found->last)) v = found->to;
     };
     const auto exit = [&](uint32_t number) {
       if (number == kNone) return;
@@ -792,7 +788,7 @@ bool walk_pointers(Function& f, const Facts& facts, std::vector<uint32_t>& unwal
   const std::vector<uint32_t> uses = count_uses(f);
   Renames renames;
   for (Walk& walk : walks) walk.change(uses, renames);
-  if (!renames.empty()) rename(f, renames);
+  if (!renames.all().empty()) rename(f, renames);
   return true;
 }
 
