@@ -17,6 +17,6 @@ done
 for source in examples/small/*.st; do
   "$build/bin/stc" build "$source" -o "$folder/small_$(basename "$source" .st).image" >/dev/null 2>&1
 done
-"$build/bench/bench_fusions" "${2:-500}" "${3:-200}" "${4:-300}" "$build"/bench/*.image "$folder"/*.image \
+"$build/bench/bench_fusions" "${2:-320}" "${3:-110}" "${4:-280}" "$build"/bench/*.image "$folder"/*.image \
   >"$folder/fusions.def"
 cp "$folder/fusions.def" vm/exec/fusions.def
