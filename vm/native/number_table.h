@@ -2,6 +2,7 @@
 // block.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -68,6 +69,23 @@ class NumberTable {
   std::vector<Slot> slots_;  // a power of two of them
   size_t used_ = 0;
   uint32_t epoch_ = 1;
+};
+
+// Integers as values of a Function: one for each number and width that is asked for here.
+class Constants {
+ public:
+  explicit Constants(Function& function) : f_(function) {}
+  Val of(uint64_t bits, uint8_t width) {
+    bits &= ~uint64_t{0} >> (64 - 8 * width);
+    const auto fresh = static_cast<Val>(f_.values.size());
+    const Val value = known_[std::countr_zero(width)].add(bits, fresh);
+    if (value == fresh) f_.values.push_back({false, width, true, bits, kNone, 0});
+    return value;
+  }
+
+ private:
+  Function& f_;
+  NumberTable known_[4];  // by width
 };
 
 // A T for each key that was asked for.

@@ -17,8 +17,13 @@ uint32_t blocks_in_front(const TurnSteps& steps) {
 // The turns of one loop, in the block `turns_`.
 class Turns {
  public:
-  Turns(Function& f, const Counted& c, const TurnSteps& steps, Block head)
-      : f_(f), c_(c), steps_(steps), head_(head), turns_(head + blocks_in_front(steps)) {
+  Turns(Function& f, const Counted& c, const TurnSteps& steps, Constants& constants, Block head)
+      : f_(f),
+        c_(c),
+        steps_(steps),
+        constants_(constants),
+        head_(head),
+        turns_(head + blocks_in_front(steps)) {
     const Loop& old = f.loops[c.loop];
     for (const Val param : f.blocks[old.head].params) {
       Value value = f.values[param];
@@ -48,9 +53,7 @@ class Turns {
     return found == nullptr ? v : *found;
   }
   Val constant(int64_t number, uint8_t width) {
-    const uint64_t bits = static_cast<uint64_t>(number) & ~uint64_t{0} >> (64 - 8 * width);
-    f_.values.push_back({false, width, true, bits, kNone, 0});
-    return static_cast<Val>(f_.values.size() - 1);
+    return constants_.of(static_cast<uint64_t>(number), width);
   }
   Val append(Node made, Block to) {
     made.unit = f_.blocks[to].unit;
@@ -197,6 +200,7 @@ class Turns {
   Function& f_;
   const Counted& c_;
   const TurnSteps& steps_;
+  Constants& constants_;
   Block head_, turns_;
   ByKey<Val> copy_;   // by value of the loop: in the turn that is made
   ByKey<Val> base_;   // in the first turn, when each one moves it
@@ -239,7 +243,7 @@ void insert_blocks(Function& f, const std::list<Unrolled>& all) {
   }
 }
 
-void turns_of_loop(Function& f, const Counted& c, const TurnSteps& steps) {
+void turns_of_loop(Function& f, const Counted& c, const TurnSteps& steps, Constants& constants) {
   const Loop old = f.loops[c.loop];
   const Block head = old.head - blocks_in_front(steps) - 1;
   const Block turns = old.head - 1;
@@ -266,7 +270,7 @@ void turns_of_loop(Function& f, const Counted& c, const TurnSteps& steps) {
   End& again = f.blocks[turns].end;
   again.kind = EndKind::kLoop;
   again.target[0] = head;
-  Turns(f, c, steps, head);
+  Turns(f, c, steps, constants, head);
   for (Block b = head; b < turns; ++b) f.blocks[b].end.args[1] = f.blocks[head].params;
 }
 
@@ -284,7 +288,8 @@ void unroll(Function& f) {
   }
   if (all.empty()) return;
   insert_blocks(f, all);
-  for (const Unrolled& one : all) turns_of_loop(f, one.counted, one.steps);
+  Constants constants(f);
+  for (const Unrolled& one : all) turns_of_loop(f, one.counted, one.steps, constants);
 }
 
 }  // namespace vm::native

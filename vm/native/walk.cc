@@ -24,10 +24,18 @@ struct Renamed {
 };
 using Renames = ByKey<Renamed>;
 
+// The ways that lead to a block: from where, and by which of its targets.
+using Ways = std::vector<std::vector<std::pair<Block, uint32_t>>>;
+
 class Walk {
  public:
-  Walk(Function& f, const Facts& facts, uint32_t loop)
-      : f_(f), facts_(facts), number_(loop), loop_(f.loops[loop]), front_(loop_.head - 1) {}
+  Walk(Function& f, const Facts& facts, const Ways& ways, uint32_t loop)
+      : f_(f),
+        facts_(facts),
+        ways_(ways),
+        number_(loop),
+        loop_(f.loops[loop]),
+        front_(loop_.head - 1) {}
 
   // Does every pointer that the loop follows come from before it, or is one that the loop moves?
   bool find() {
@@ -38,10 +46,12 @@ class Walk {
         if (n.op != Op::kResolve && n.op != Op::kMoveHandle) continue;
         if (n.exit == kNone || walker_of(n.in[0]) == kNone) return false;
         if (n.op == Op::kMoveHandle) walker_of(n.result);
-        if (n.op == Op::kResolve) resolved_.push_back(n.result);
+        if (n.op != Op::kResolve) continue;
+        resolved_.set(n.result, 0);
+        any_ = true;
       }
     }
-    if (resolved_.empty()) return true;
+    if (!any_) return true;
     for (const Walker& w : walkers_) {
       if (w.param == kNone) continue;
       bool same = true;
@@ -54,9 +64,10 @@ class Walk {
   }
 
   // `uses`: by value.
-  void change(const std::vector<uint32_t>& uses, Renames& renames) {
-    if (resolved_.empty()) return;
-    sure_ = every_turn(f_, loop_);
+  void change(const std::vector<uint32_t>& uses, Constants& constants, Renames& renames) {
+    if (!any_) return;
+    constants_ = &constants;
+    for (const Block b : every_turn(f_, loop_)) sure_.set(b, 0);
     find_steps(uses);
     for (Walker& w : walkers_) begin(w);
     for (Block b = loop_.head; b <= loop_.last; ++b) block(b);
@@ -138,14 +149,10 @@ class Walk {
 
   uint32_t walker_of_all_ways(Block block, uint32_t param) {
     uint32_t one = kNone;
-    for (Block b = loop_.head; b < block; ++b) {
-      const End& end = f_.blocks[b].end;
-      for (uint32_t i = 0; i < 2; ++i) {
-        if (end.target[i] != block) continue;
-        const uint32_t found = walker_of(end.args[i][param]);
-        if (found == kNone || (one != kNone && found != one)) return kNone;
-        one = found;
-      }
+    for (const auto& [from, way] : ways_[block]) {
+      const uint32_t found = walker_of(f_.blocks[from].end.args[way][param]);
+      if (found == kNone || (one != kNone && found != one)) return kNone;
+      one = found;
     }
     return one;
   }
@@ -190,9 +197,7 @@ class Walk {
 
   // Is an address wanted by anything but loads?
   bool stores() const {
-    const auto is_resolved = [&](Val v) {
-      return std::find(resolved_.begin(), resolved_.end(), v) != resolved_.end();
-    };
+    const auto is_resolved = [&](Val v) { return v != kNone && resolved_.find(v) != kNone; };
     for (Block b = loop_.head; b <= loop_.last; ++b) {
       for (const uint32_t number : f_.blocks[b].nodes) {
         const Node& n = f_.nodes[number];
@@ -205,10 +210,7 @@ class Walk {
 
   // --- in front of the loop ---------------------------------------------------------
 
-  Val constant(uint64_t bits, uint8_t width) {
-    f_.values.push_back({false, width, true, bits, kNone, 0});
-    return static_cast<Val>(f_.values.size() - 1);
-  }
+  Val constant(uint64_t bits, uint8_t width) { return constants_->of(bits, width); }
   uint32_t made(Node n, Block b) {
     n.unit = unit_;
     const auto number = static_cast<uint32_t>(f_.nodes.size());
@@ -345,11 +347,9 @@ class Walk {
       const Val handle = f_.blocks[b].params[i];
       if (walker(handle) == nullptr) continue;
       lies_at(handle, new_param(b, i));
-      for (Block from = loop_.head; from < b; ++from) {
-        End& end = f_.blocks[from].end;
-        for (uint32_t way = 0; way < 2; ++way) {
-          if (end.target[way] == b) end.args[way][i] = distance_.at(end.args[way][i]);
-        }
+      for (const auto& [from, way] : ways_[b]) {
+        Val& arg = f_.blocks[from].end.args[way][i];
+        arg = distance_.at(arg);
       }
     }
   }
@@ -430,7 +430,7 @@ class Walk {
     const uint32_t* const step = steps_.find(n.in[0]);
     leave_if(Cond::kGeU, distance, limit_of(w, last), step == nullptr ? n.exit : *step);
     if (step != nullptr) f_.exits[n.exit].slots.clear();
-    covered_.push_back({distance, last + 1, b});
+    cover(distance, last + 1, b);
     addresses_[n.result] = {distance, walkers_[w].place, bytes};
     // For what is neither load nor store.
     Node sum;
@@ -447,11 +447,17 @@ class Walk {
 
   // Have so many bytes behind the distance been asked for already?
   bool is_covered(Val distance, int64_t bytes, Block b) const {
-    if (bytes < 0) return false;
-    return std::any_of(covered_.begin(), covered_.end(), [&](const Covered& c) {
-      return c.distance == distance && c.bytes >= static_cast<uint64_t>(bytes) &&
-             (c.block == b || std::find(sure_.begin(), sure_.end(), c.block) != sure_.end());
-    });
+    const Covered* const c = covered_.find(distance);
+    if (bytes < 0 || c == nullptr) return false;
+    const uint64_t here = c->block == b ? std::max(c->here, c->surely) : c->surely;
+    return static_cast<uint64_t>(bytes) <= here;
+  }
+  void cover(Val distance, uint64_t bytes, Block b) {
+    Covered& c = covered_[distance];
+    if (c.block != b) c.here = 0;
+    c.block = b;
+    c.here = std::max(c.here, bytes);
+    if (sure_.find(b) != kNone) c.surely = std::max(c.surely, bytes);
   }
 
   // p[i]: a handle that is made to be resolved at once needs no question of its own; where the one
@@ -651,23 +657,15 @@ class Walk {
   }
 
   bool has_other_way(Block out) const {
-    for (Block b = 0; b < f_.blocks.size(); ++b) {
-      if (b >= loop_.head && b <= loop_.last) continue;
-      for (const Block to : f_.blocks[b].end.target) {
-        if (to == out) return true;
-      }
-    }
-    return false;
+    return std::any_of(ways_[out].begin(), ways_[out].end(), [&](const auto& way) {
+      return way.first < loop_.head || way.first > loop_.last;
+    });
   }
 
   // What all ways bring is one pointer's: its distance.
   void param_behind(Block out, uint32_t param) {
     const auto each = [&](auto visit) {
-      for (Block b = loop_.head; b <= loop_.last; ++b) {
-        for (uint32_t way = 0; way < 2; ++way) {
-          if (f_.blocks[b].end.target[way] == out) visit(f_.blocks[b].end.args[way][param]);
-        }
-      }
+      for (const auto& [from, way] : ways_[out]) visit(f_.blocks[from].end.args[way][param]);
     };
     uint32_t one = kNone;
     bool same = true;
@@ -690,13 +688,15 @@ class Walk {
   };
 
   struct Covered {
-    Val distance = kNone;
-    uint64_t bytes = 0;
+    uint64_t surely = 0;  // asked for in every turn
+    uint64_t here = 0;    // in this block
     Block block = 0;
   };
 
   Function& f_;
   const Facts& facts_;
+  const Ways& ways_;
+  Constants* constants_ = nullptr;
   uint32_t number_;
   Loop loop_;
   Block front_;
@@ -707,9 +707,10 @@ class Walk {
   std::vector<Val> handles_;  // that have one
   ByKey<uint32_t> steps_;     // exits, by handle that is resolved at once
   ByKey<Address> addresses_;  // by what they were
-  std::vector<Covered> covered_;
-  std::vector<Block> sure_;  // every turn goes through them
-  std::vector<Val> resolved_;
+  ByKey<Covered> covered_;    // by distance: bytes behind it
+  NumberTable sure_;          // blocks that every turn goes through
+  NumberTable resolved_;  // results of RESOLVE
+  bool any_ = false;      // ... of which there are some
   std::vector<Question> questions_;
   std::vector<uint32_t> out_;
 };
@@ -717,6 +718,17 @@ class Walk {
 }  // namespace
 
 namespace {
+
+Ways ways_of(const Function& f) {
+  Ways ways(f.blocks.size());
+  for (Block b = 0; b < f.blocks.size(); ++b) {
+    const End& end = f.blocks[b].end;
+    for (uint32_t way = 0; way < 2; ++way) {
+      if (end.target[way] != kNone) ways[end.target[way]].push_back({b, way});
+    }
+  }
+  return ways;
+}
 
 std::vector<uint32_t> count_uses(const Function& f) {
   std::vector<uint32_t> uses(f.values.size(), 0);
@@ -774,11 +786,13 @@ void rename(Function& f, const Renames& renames) {
 
 bool walk_pointers(Function& f, const Facts& facts, std::vector<uint32_t>& unwalked) {
   std::vector<Walk> walks;
+  Ways ways;
   bool all = true;
   const auto loops = static_cast<uint32_t>(facts.loops().size());
   for (uint32_t l = 0; l < loops; ++l) {
     if (!facts.is_walked(l)) continue;
-    walks.emplace_back(f, facts, l);
+    if (ways.empty()) ways = ways_of(f);
+    walks.emplace_back(f, facts, ways, l);
     if (walks.back().find()) continue;
     unwalked.push_back(facts.blocks()[facts.loops()[l].head].first);
     all = false;
@@ -787,7 +801,8 @@ bool walk_pointers(Function& f, const Facts& facts, std::vector<uint32_t>& unwal
   if (walks.empty()) return true;
   const std::vector<uint32_t> uses = count_uses(f);
   Renames renames;
-  for (Walk& walk : walks) walk.change(uses, renames);
+  Constants constants(f);
+  for (Walk& walk : walks) walk.change(uses, constants, renames);
   if (!renames.all().empty()) rename(f, renames);
   return true;
 }
