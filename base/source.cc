@@ -56,8 +56,9 @@ SourceLocation SourceMap::locate(SourcePos pos) const {
   uint32_t offset = pos.offset - file.base;
   auto after = std::upper_bound(file.line_starts.begin(), file.line_starts.end(), offset);
   uint32_t start = *(after - 1);
-  const size_t end = text.find('\n', start);
-  std::string_view line = text.substr(start, end == text.npos ? text.npos : end - start);
+  // Of what has a place in a very long line, nothing looks for its end.
+  const size_t end = after == file.line_starts.end() ? text.size() : *after - 1;
+  std::string_view line = text.substr(start, end - start);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   return {file.name, static_cast<uint32_t>(after - file.line_starts.begin()), offset - start + 1,
           line};

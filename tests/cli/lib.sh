@@ -35,6 +35,19 @@ expect() {
   done
   [ "$code" -eq "$wanted" ] || fail "exit code $code instead of $wanted: $*"
 }
+# needs_xml COMMAND...: as `expect 0`. A build without pugixml refuses it and says what is missing;
+# there the test ends.
+needs_xml() {
+  code=0
+  "$@" >out 2>err </dev/null || code=$?
+  if grep -q 'built without pugixml' err; then
+    [ "$code" -eq 7 ] || fail "refused with $code"
+    said 'libpugixml-dev'
+    echo "built without pugixml: refused, as it should be"
+    exit 0
+  fi
+  [ "$code" -eq 0 ] || fail "exit code $code instead of 0: $*"
+}
 # said REGEX: the last command printed it, on either stream.
 said() { cat out err | grep -qE -- "$1" || fail "not said: $1"; }
 # json EXPRESSION: it holds for `d`, what the last command printed on standard output as JSON.
