@@ -102,9 +102,9 @@ struct Context {
   TryRecord* tries_begin = nullptr;
   TryRecord* try_top = nullptr;  // next free record
   TryRecord* tries_end = nullptr;
-  Trap caught;                        // last
-  bool trap_has_place = false;        // `trap` says already where it was
-  bool trapped = false;               // since it began: `trap` or `caught` is not empty
+  Trap caught;                  // last
+  bool trap_has_place = false;  // `trap` says already where it was
+  bool trapped = false;         // since it began: `trap` or `caught` is not empty
   // By the place of the instruction, then those of loops.
   KnownReach reaches[kKnownReaches + kLoopReaches];
 };
@@ -114,8 +114,8 @@ struct Context {
 // there. And the handle moved by the lower half of `bytes`.
 uint64_t resolve_for_code(Context* ctx, uint64_t handle, uint64_t size_and_bytes, uint64_t site);
 uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t site);
-// How far behind the first byte of its variable the handle is, at most one past the end. Where there
-// is none that can be walked over, 2^32 behind the first byte of one without any.
+// How far behind the first byte of its variable the handle is, at most one past the end. Where
+// there is none that can be walked over, 2^32 behind the first byte of one without any.
 uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site);
 
 #define STC_HANDLER_ARGS                                                \

@@ -132,7 +132,8 @@ void Builder::resolve() {
   write_a(found);
 }
 
-// Of a place in the own instance or the globals; false: of a local, which is exposed by the handler.
+// Of a place in the own instance or the globals; false: of a local, which is exposed by the
+// handler.
 bool Builder::handle() {
   if (u_.base_b() != ir::Base::kSelf && u_.base_b() != ir::Base::kGlobal) return false;
   const bool own = u_.base_b() == ir::Base::kSelf;

@@ -10,8 +10,8 @@ using ir::Opcode;
 
 constexpr size_t kMostLivenessWords = size_t{8} << 20;
 
-// May the execution go on in another POU or in the interpreter? The pointers of some loops are moved
-// by the interpreter when they leave their variable.
+// May the execution go on in another POU or in the interpreter? The pointers of some loops are
+// moved by the interpreter when they leave their variable.
 bool leaves(Opcode op) {
   const bool moves = op == Opcode::HANDLE_ADD || op == Opcode::HANDLE_STEP;
   return moves || is_call(op) || ir::opcode_row(op).traps;

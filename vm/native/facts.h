@@ -176,8 +176,8 @@ class Facts {
   uint32_t loop_of(Block block) const { return loop_of_[block]; }  // innermost, or kNone
   // A call that no body stands for.
   bool has_call(uint32_t loop) const { return loop_calls_[loop]; }
-  // Is it taken that what pointers lead to in the loop is no variable that it names? walk_pointers()
-  // has to ask for that.
+  // Is it taken that what pointers lead to in the loop is no variable that it names?
+  // walk_pointers() has to ask for that.
   bool is_walked(uint32_t loop) const { return loop != kNone && walked_[loop]; }
   // In the place of the call at the unit; none: it calls.
   std::span<const InPlace> bodies_at(uint32_t unit) const;
@@ -280,7 +280,7 @@ class Facts {
   std::vector<Loop> loops_;
   std::vector<uint32_t> loop_of_;
   std::vector<bool> loop_calls_;
-  std::vector<bool> walked_;  // by loop
+  std::vector<bool> walked_;            // by loop
   ByKey<std::vector<InPlace>> bodies_;  // by unit
   std::vector<std::vector<uint32_t>> loop_reads_;
   std::vector<std::vector<uint32_t>> loop_killed_;

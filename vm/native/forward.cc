@@ -216,7 +216,8 @@ class Forwarder {
         // A constant of floating point costs more than a load.
         const Value& v = f_.values[value];
         // Of a wider integer memory has the lower bytes, which are what is wanted of its register.
-        const bool has_all = v.width == n.width || (v.width > n.width && !v.floating && !v.constant);
+        const bool has_all =
+            v.width == n.width || (v.width > n.width && !v.floating && !v.constant);
         if (has_all && !(v.constant && v.floating)) {
           add({mem, root, n.width, false, value});
         }

@@ -84,8 +84,8 @@ enum class Op : uint8_t {
   // half says how many; leaves at `exit` when they are not there
   kResolve,
   kMoveHandle,  // the handle in[0] moved by the low 4 bytes of in[1]
-  // In front of a loop (walk.cc): how far behind the first byte of its variable the handle in[0] is,
-  // which `site` knows from then on. What cannot be walked over is further away than its size.
+  // In front of a loop (walk.cc): how far behind the first byte of its variable the handle in[0]
+  // is, which `site` knows from then on. What cannot be walked over is further away than its size.
   kReach,
   kReachPart,  // of what in[0], a kReach, has found: the member of KnownReach at byte `imm`
   kHandleAt,   // the handle that lies so far behind: in[0], at most one past the end

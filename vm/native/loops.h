@@ -13,9 +13,9 @@ bool is_operation(const Node& node);
 void insert_preheaders(Function& function);
 
 // After insert_preheaders(), of loops that facts have as walked: pointers become distances from the
-// first byte of their variable, which is looked for once, in front of the loop. There is asked, too,
-// that it holds none of the variables that the loop names. False: some loop's pointers go other ways;
-// it has been added to `unwalked`, and the Function is to be made again.
+// first byte of their variable, which is looked for once, in front of the loop. There is asked,
+// too, that it holds none of the variables that the loop names. False: some loop's pointers go
+// other ways; it has been added to `unwalked`, and the Function is to be made again.
 bool walk_pointers(Function& function, const Facts& facts, std::vector<uint32_t>& unwalked);
 
 // After insert_preheaders(): what a dominating block computes or checks is not done again.

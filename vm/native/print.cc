@@ -7,15 +7,16 @@ namespace vm::native {
 namespace {
 
 const char* const kNames[] = {
-    "const",    "load",       "store",      "addr",       "place",    "add",         "addsh",
-    "sub",      "mul",        "and",        "or",         "xor",      "andn",        "orn",
-    "shl",      "shr",        "sar",        "rol",        "ror",      "divs",        "divu",
-    "mods",     "modu",       "mulhighs",   "mulhighu",   "neg",      "not",         "notb",
-    "compare",  "select",     "selectcmp",  "sext",       "zext",     "fadd",        "fsub",
-    "fmul",     "fdiv",       "fmin",       "fmax",       "fneg",     "fabs",        "fsqrt",
-    "fcompare", "fselect",    "inttofloat", "floattoint", "fwidth",   "bitstof",     "ftobits",
-    "resolve",  "movehandle", "reach",      "reachpart",  "handleat", "exitif",     "instance",   "tasktime", "advancetime", "pool",
-    "context",  "native",     "helper",     "call",       "enter"};
+    "const",    "load",        "store",      "addr",       "place",    "add",     "addsh",
+    "sub",      "mul",         "and",        "or",         "xor",      "andn",    "orn",
+    "shl",      "shr",         "sar",        "rol",        "ror",      "divs",    "divu",
+    "mods",     "modu",        "mulhighs",   "mulhighu",   "neg",      "not",     "notb",
+    "compare",  "select",      "selectcmp",  "sext",       "zext",     "fadd",    "fsub",
+    "fmul",     "fdiv",        "fmin",       "fmax",       "fneg",     "fabs",    "fsqrt",
+    "fcompare", "fselect",     "inttofloat", "floattoint", "fwidth",   "bitstof", "ftobits",
+    "resolve",  "movehandle",  "reach",      "reachpart",  "handleat", "exitif",  "instance",
+    "tasktime", "advancetime", "pool",       "context",    "native",   "helper",  "call",
+    "enter"};
 const char* const kConds[] = {"=",  "<>",  "<s", "<=s", ">s",     ">=s",
                               "<u", "<=u", ">u", ">=u", "no bit", "any bit"};
 const char* const kEnds[] = {"jump",   "loop", "branch",     "take fuel",

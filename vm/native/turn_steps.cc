@@ -59,8 +59,8 @@ int64_t TurnSteps::step(const Node& n) const {
   const auto known = [&](Val v) { return of(v) != 0 || is_fixed(v); };
   const auto times = [&](uint64_t factor) -> int64_t {
     int64_t product;
-    const bool wraps = factor > INT32_MAX ||
-                       __builtin_mul_overflow(of(a), static_cast<int64_t>(factor), &product);
+    const bool wraps =
+        factor > INT32_MAX || __builtin_mul_overflow(of(a), static_cast<int64_t>(factor), &product);
     return wraps ? 0 : product;
   };
   switch (n.op) {
@@ -73,8 +73,9 @@ int64_t TurnSteps::step(const Node& n) const {
     case Op::kAddShifted:
       return known(a) && known(b) ? of(a) + of(b) * (int64_t{1} << n.imm) : 0;
     case Op::kShl:
-      return f_.values[b].constant && f_.values[b].bits < 31 ? times(uint64_t{1} << f_.values[b].bits)
-                                                             : 0;
+      return f_.values[b].constant && f_.values[b].bits < 31
+                 ? times(uint64_t{1} << f_.values[b].bits)
+                 : 0;
     case Op::kMul:
       return f_.values[b].constant ? times(f_.values[b].bits) : 0;
     default:

@@ -1,5 +1,5 @@
-// Loops that walk over variables with pointers: machine code does what the interpreter does, wherever
-// the pointers lead, and wherever fuel ends.
+// Loops that walk over variables with pointers: machine code does what the interpreter does,
+// wherever the pointers lead, and wherever fuel ends.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -65,7 +65,8 @@ VAR_GLOBAL g : ARRAY[0..15] OF BYTE; gx : DINT; gp : POINTER TO BYTE; END_VAR
 FUNCTION_BLOCK Block VAR v : ARRAY[0..7] OF BYTE; u : UINT; inner : R_TRIG; END_VAR END_FUNCTION_BLOCK
 )";
     if (in_function) {
-      out += "FUNCTION Walk : UDINT\nVAR" + own + "END_VAR\n" + body + "  Walk := s + TO_UDINT(x);\n";
+      out +=
+          "FUNCTION Walk : UDINT\nVAR" + own + "END_VAR\n" + body + "  Walk := s + TO_UDINT(x);\n";
       out += "END_FUNCTION\nPROGRAM Main VAR scans, r : UDINT; fb : Block; END_VAR\n";
       return out + "  scans := scans + 1; r := r * 3 + Walk();\nEND_PROGRAM\n";
     }
@@ -83,10 +84,23 @@ FUNCTION_BLOCK Block VAR v : ARRAY[0..7] OF BYTE; u : UINT; inner : R_TRIG; END_
 
   std::string place() {
     static constexpr const char* kUsual[] = {"ADR(a)", "ADR(b)", "ADR(g)", "ADR(a[3])", "ADR(a)"};
-    static constexpr const char* kOdd[] = {
-        "ADR(p)",    "ADR(q)", "ADR(x)", "ADR(s)",      "ADR(i)",         "ADR(one)",
-        "ADR(cell)", "0",      "gp",     "ADR(cell.t)", "ADR(g) - 1",     "ADR(gx)",
-        "ADR(w)",    "q",      "p",      "ADR(a) + 20", "ADR(b) + SIZEOF(b)"};
+    static constexpr const char* kOdd[] = {"ADR(p)",
+                                           "ADR(q)",
+                                           "ADR(x)",
+                                           "ADR(s)",
+                                           "ADR(i)",
+                                           "ADR(one)",
+                                           "ADR(cell)",
+                                           "0",
+                                           "gp",
+                                           "ADR(cell.t)",
+                                           "ADR(g) - 1",
+                                           "ADR(gx)",
+                                           "ADR(w)",
+                                           "q",
+                                           "p",
+                                           "ADR(a) + 20",
+                                           "ADR(b) + SIZEOF(b)"};
     static constexpr const char* kInstances[] = {"ADR(fb)", "ADR(mixed)", "ADR(mixed.t)"};
     std::string at = one_of(4) == 0 ? any(kOdd) : any(kUsual);
     if (has_instances_ && one_of(12) == 0) at = any(kInstances);
@@ -103,14 +117,15 @@ FUNCTION_BLOCK Block VAR v : ARRAY[0..7] OF BYTE; u : UINT; inner : R_TRIG; END_
   }
 
   std::string value() {
-    static constexpr const char* kValues[] = {
-        "p^", "q^", "p^", "TO_BYTE(w^)", "p[i]", "q[k]", "a[3]", "g[2]", "TO_BYTE(x)", "one", "gp^"};
+    static constexpr const char* kValues[] = {"p^",         "q^",   "p^",   "TO_BYTE(w^)",
+                                              "p[i]",       "q[k]", "a[3]", "g[2]",
+                                              "TO_BYTE(x)", "one",  "gp^"};
     return any(kValues);
   }
 
   std::string condition() {
-    static constexpr const char* kConditions[] = {"p^ = 3", "i > 4",         "p < q",     "s > 1000",
-                                                  "x = y",  "p = ADR(a[7])", "q^ <> one", "p[1] < 9"};
+    static constexpr const char* kConditions[] = {
+        "p^ = 3", "i > 4", "p < q", "s > 1000", "x = y", "p = ADR(a[7])", "q^ <> one", "p[1] < 9"};
     return any(kConditions);
   }
 
@@ -156,14 +171,16 @@ FUNCTION_BLOCK Block VAR v : ARRAY[0..7] OF BYTE; u : UINT; inner : R_TRIG; END_
 
   // Turns that all go one way: several are done at once.
   std::string straight() {
-    static constexpr const char* kDone[] = {
-        "s := s * 3 + p^; ", "q^ := p^; q := q + 1; ", "s := s + p[1]; ",     "p^ := one; ",
-        "w^ := TO_WORD(s); ", "w := w + 2; ",           "x := x + p[i] + w^; ", "a[i] := b[i] + q^; "};
+    static constexpr const char* kDone[] = {"s := s * 3 + p^; ",    "q^ := p^; q := q + 1; ",
+                                            "s := s + p[1]; ",      "p^ := one; ",
+                                            "w^ := TO_WORD(s); ",   "w := w + 2; ",
+                                            "x := x + p[i] + w^; ", "a[i] := b[i] + q^; "};
     static constexpr const char* kWhile[] = {"p < q", "p <= q", "q > p", "q >= p"};
     std::string body;
     for (int n = 1 + one_of(3); n > 0; --n) body += any(kDone);
     const std::string step = "p := p + " + std::to_string(1 + one_of(3)) + "; ";
-    if (one_of(2) == 0) return std::string("  WHILE ") + any(kWhile) + " DO " + body + step + "END_WHILE;\n";
+    if (one_of(2) == 0)
+      return std::string("  WHILE ") + any(kWhile) + " DO " + body + step + "END_WHILE;\n";
     body += one_of(2) == 0 ? step : "";
     const std::string last = one_of(2) == 0 ? number(30) : "k + " + number(30);
     return "  FOR i := " + number(4) + " TO " + last + " DO " + body + "END_FOR;\n";
@@ -209,7 +226,7 @@ TEST(NativeWalk, AByteThatWasNotAskedForInEveryTurnIsNotThere) {
 PROGRAM Main VAR a, b : ARRAY[0..5] OF BYTE := [6(9)]; p : POINTER TO BYTE; i, x : INT; END_VAR
   p := ADR(a);
   FOR i := 0 TO 8 DO IF )") +
-            condition + R"( THEN x := x * 3 + p^; END_IF; p := p + 1; END_FOR;
+                condition + R"( THEN x := x * 3 + p^; END_IF; p := p + 1; END_FOR;
   FOR i := 0 TO 8 DO p := p - 1; END_FOR;
   x := x + p^;
 END_PROGRAM)");
@@ -226,7 +243,7 @@ TYPE Mixed : STRUCT n : INT := 5; edge : R_TRIG; t : ARRAY[0..5] OF BYTE; END_ST
 PROGRAM Main VAR plain : Plain; mixed : Mixed; p : POINTER TO BYTE; i, x : INT; END_VAR
   mixed.edge(CLK := TRUE);
   p := )" + place +
-            R"(;
+                R"(;
   FOR i := 0 TO 7 DO x := x * 3 + p^; p := p + 1; END_FOR;
   p := p - 1;
   x := x + p^;
@@ -265,7 +282,8 @@ TEST(NativeWalk, RandomLoopsDoWhatTheInterpreterDoes) {
     }
   }
 #if defined(__x86_64__)
-  RecordProperty("walks", static_cast<int>(walks)); EXPECT_GT(walks, count / 2) << "most of them have a loop that walks";
+  RecordProperty("walks", static_cast<int>(walks));
+  EXPECT_GT(walks, count / 2) << "most of them have a loop that walks";
 #endif
 }
 

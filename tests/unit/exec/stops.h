@@ -22,7 +22,8 @@ struct Stop {
 
 inline void PrintTo(const Stop& stop, std::ostream* out) {
   *out << "exit " << static_cast<int>(stop.exit) << ", fuel " << stop.fuel << ", unit " << stop.unit
-       << " " << stop.trap << "\n" << stop.state;
+       << " " << stop.trap << "\n"
+       << stop.state;
 }
 
 // Three scans, each in slices, of `most` fuel together.

@@ -155,7 +155,7 @@ void Emitter::own_stubs() {
   for (const HandleStub& stub : handle_stubs_) {
     const Node& n = *stub.node;
     const bool resolves = n.op == Op::kResolve;
-    const auto function = resolves                   ? &resolve_for_code
+    const auto function = resolves                  ? &resolve_for_code
                           : n.op == Op::kMoveHandle ? &move_for_code
                                                     : &reach_for_code;
     const auto push = [&](uint64_t bits) {
