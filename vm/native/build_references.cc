@@ -103,14 +103,7 @@ void Builder::call_reference() {
   call(kind, pou, made);
 }
 
-namespace {
-
-constexpr uint64_t kMostBytes = uint64_t{1} << 30;  // that a displacement takes
-
-}  // namespace
-
-// Values with slots inside are seldom, and the interpreter knows where they may lie; but an
-// instance is found as for a call.
+// An instance is found as for a call.
 void Builder::resolve() {
   const ir::TypeId type = ir::region_of_field(x_.x()).type;
   if (facts_.resolves_instance(unit_)) {
@@ -118,10 +111,9 @@ void Builder::resolve() {
     leave_unless_one_of(*facts_.kinds_of(type), object.type);
     return write_a(area_of(object, facts_.may_be_own(type)));
   }
+  if (!facts_.follows_bytes(unit_)) return helper();
   const uint64_t size = facts_.image().layouts[type].size;
   const uint64_t bytes = x_.y();
-  const bool fits = size != 0 && size < kMostBytes && bytes < kMostBytes;
-  if (!host::kFollowsHandles || !fits || facts_.has_slots(type)) return helper();
   Node made = node(Op::kResolve, 4, read_b());
   made.imm = size << 32 | bytes;
   made.site = static_cast<uint8_t>(handle_sites_++ % kKnownReaches);

@@ -237,6 +237,9 @@ class Facts {
   bool resolves_instance(uint32_t unit) const {
     return extension(unit).y() == 0 && kinds_of(ir::region_of_field(extension(unit).x()).type);
   }
+  // Does machine code follow the handle of the RESOLVE to bytes of a variable? Else it finds an
+  // instance, or a handler looks for it.
+  bool follows_bytes(uint32_t unit) const;
   bool may_be_own(ir::TypeId type) const { return native::may_be_own(*image_, *pou_, type); }
   bool clean_bools() const { return common_->clean_bools; }
   void successors(Block block, Block out[2], uint32_t& count) const;

@@ -215,10 +215,10 @@ class Forwarder {
         const Val value = real(n.in[0]);
         // A constant of floating point costs more than a load.
         const Value& v = f_.values[value];
-        // Of a wider integer memory has the lower bytes, which are what is wanted of its register.
-        const bool has_all =
-            v.width == n.width || (v.width > n.width && !v.floating && !v.constant);
-        if (has_all && !(v.constant && v.floating)) {
+        // Of a wider integer memory has the lower bytes. What is above them in a register is of no
+        // meaning, but for four bytes, which have zeros there.
+        const bool is_part = n.width < 4 && v.width > n.width && !v.floating && !v.constant;
+        if (is_part || (v.width == n.width && !(v.constant && v.floating))) {
           add({mem, root, n.width, false, value});
         }
         return;

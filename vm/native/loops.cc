@@ -7,15 +7,6 @@ namespace {
 
 constexpr uint32_t kMostHoistedValues = 10;  // values in front of one loop: registers are few
 
-bool is_movable(const Node& n) {
-  // A check of the divisor stands before; an index may not have been checked where the loop is not
-  // entered.
-  const bool divides =
-      n.op == Op::kDivS || n.op == Op::kDivU || n.op == Op::kModS || n.op == Op::kModU;
-  const bool indexed = n.op == Op::kLoad && n.mem.index != kNone;
-  return is_operation(n) && !divides && !indexed;
-}
-
 class Hoister {
  public:
   explicit Hoister(Function& f) : f_(f) {}
@@ -80,6 +71,15 @@ class Hoister {
 };
 
 }  // namespace
+
+bool is_movable(const Node& n) {
+  // A check of the divisor stands before; an index may not have been checked where the loop is not
+  // entered.
+  const bool divides =
+      n.op == Op::kDivS || n.op == Op::kDivU || n.op == Op::kModS || n.op == Op::kModU;
+  const bool indexed = n.op == Op::kLoad && n.mem.index != kNone;
+  return is_operation(n) && !divides && !indexed;
+}
 
 std::vector<Block> every_turn(const Function& f, const Loop& loop) {
   std::vector<Block> out;

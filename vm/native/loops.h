@@ -8,6 +8,9 @@ namespace vm::native {
 // Does it do nothing but give a value, always the same, or leave by its exit?
 bool is_operation(const Node& node);
 
+// Can it be done in front of a loop, whether a turn does it or not?
+bool is_movable(const Node& node);
+
 // Puts a block in front of every loop head. All ways in lead through it, that of a resumed
 // execution too, so what it computes holds in the whole loop.
 void insert_preheaders(Function& function);

@@ -4,6 +4,7 @@
 #include "ir/bytecode/regions.h"
 #include "stdlib/native/natives.h"
 #include "vm/native/facts.h"
+#include "vm/native/host.h"
 
 namespace vm::native {
 namespace {
@@ -112,6 +113,16 @@ void Facts::find_reach() {
   find_targets();
 }
 
+// Values with slots inside are seldom, and the interpreter knows where they may lie.
+bool Facts::follows_bytes(uint32_t i) const {
+  constexpr uint64_t kMostBytes = uint64_t{1} << 30;  // that a displacement takes
+  if (!host::kFollowsHandles || code_[i].opcode() != Opcode::RESOLVE) return false;
+  const ir::TypeId type = ir::region_of_field(extension(i).x()).type;
+  const uint64_t size = image_->layouts[type].size;
+  return !resolves_instance(i) && size != 0 && size < kMostBytes && extension(i).y() < kMostBytes &&
+         !has_slots(type);
+}
+
 // Innermost loops that follow pointers and call nothing.
 void Facts::find_walked(const std::vector<uint32_t>& unwalked) {
   std::vector<bool> outer(loops_.size(), false);
@@ -125,7 +136,7 @@ void Facts::find_walked(const std::vector<uint32_t>& unwalked) {
     bool calls = false;
     for (uint32_t i = first; i < blocks_[loops_[l].last].behind; i = next(i)) {
       calls |= is_call(code_[i].opcode());
-      follows |= code_[i].opcode() == Opcode::RESOLVE;
+      follows |= follows_bytes(i);
     }
     walked_[l] = follows && !calls;
   }
@@ -138,7 +149,7 @@ void Facts::find_targets() {
   bool walks = false;
   const auto at = [&](uint32_t slot) {
     const uint32_t near = made_by.find(slot);
-    if (near != kNone && walks && code_[near].opcode() == Opcode::RESOLVE) return Reach();
+    if (near != kNone && walks && follows_bytes(near)) return Reach();
     if (near != kNone) return reach_of_unit(near);
     const Reach* const any = reach_.find(slot);
     return any == nullptr ? Reach{true, false, {}} : *any;

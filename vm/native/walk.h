@@ -59,7 +59,6 @@ class Walk {
     uint64_t end = 0;
   };
 
-  uint32_t index_of(const Walker& w) const { return static_cast<uint32_t>(&w - walkers_.data()); }
   bool is_inside(Val v) const { return !f_.values[v].constant && f_.values[v].block >= loop_.head; }
 
   template <class Visit>

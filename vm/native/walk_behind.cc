@@ -47,7 +47,7 @@ bool Walk::to_front(Val v) {
   const uint32_t number = f_.values[v].node;
   if (number == kNone) return false;
   const Node n = f_.nodes[number];
-  if (!is_operation(n) || n.exit != kNone || walker(v) != nullptr) return false;
+  if (!is_movable(n) || n.exit != kNone || walker(v) != nullptr) return false;
   if (!to_front(n.mem.index) || !to_front(n.mem.pointer)) return false;
   for (const Val in : n.in) {
     if (!to_front(in)) return false;

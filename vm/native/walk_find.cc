@@ -24,10 +24,12 @@ bool Walk::find() {
     }
   }
   if (!any_) return true;
-  for (const Walker& w : walkers_) {
-    if (w.param == kNone) continue;
+  // What a turn brings may be a pointer that was not known yet: there are more of them then.
+  for (uint32_t w = 0; w < walkers_.size(); ++w) {
+    const uint32_t param = walkers_[w].param;
+    if (param == kNone) continue;
     bool same = true;
-    each_turn([&](End& end) { same &= walker_of(end.args[0][w.param]) == index_of(w); });
+    each_turn([&](End& end) { same &= walker_of(end.args[0][param]) == w; });
     if (!same) return false;
   }
   find_questions();

@@ -33,6 +33,8 @@ std::vector<uint32_t> count_uses(const Function& f) {
     for (const std::vector<Val>& args : block.end.args) {
       for (const Val v : args) use(v);
     }
+    for (const Reload& reload : block.reloads) use(reload.value);
+    for (const SlotValue& slot : block.dirty) use(slot.value);
     if (block.end.exit == kNone) continue;
     for (const SlotValue& slot : f.exits[block.end.exit].slots) use(slot.value);
   }

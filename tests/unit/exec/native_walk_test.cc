@@ -260,6 +260,38 @@ PROGRAM Main VAR one, two : BYTE; w : POINTER TO WORD; i, x : INT; END_VAR
 END_PROGRAM)");
 }
 
+// These have no loop that walks, or none on all machines.
+void expect_same_anyhow(const std::string& source) {
+  for (const Optimised optimised : {Optimised::kNo, Optimised::kYes}) {
+    compare(build(source, nullptr, optimised), source, {1, 2, 5, 599, 5'000});
+  }
+}
+
+TEST(NativeWalk, AReferenceToTheOwnInstanceChangesWhatTheLoopNames) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  for (const char* const other : {"", "x := x + p^; p := p + 1; "}) {
+    expect_same_anyhow(std::string(R"(
+FUNCTION_BLOCK Fb
+VAR_INPUT count : DINT; r : REF_TO Fb; END_VAR
+VAR s, x : DINT; i : INT; a : ARRAY[0..19] OF BYTE := [20(3)]; p : POINTER TO BYTE; END_VAR
+  p := ADR(a);
+  FOR i := 0 TO 9 DO r^.count := r^.count + 1; s := s * 3 + count; count := count + 2; )") +
+                       other + R"(END_FOR;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR fb : Fb; END_VAR fb(r := REF(fb)); END_PROGRAM)");
+  }
+}
+
+TEST(NativeWalk, APointerThatBecomesAnotherOneIsFollowedOneByOne) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  expect_same_anyhow(R"(
+PROGRAM Main VAR a, b, c : ARRAY[0..9] OF BYTE := [10(3)]; i, x : INT;
+  p, q, r, t : POINTER TO BYTE; END_VAR
+  p := ADR(a); q := ADR(b); r := ADR(c);
+  FOR i := 0 TO 8 DO x := x * 3 + p^; p^ := INT_TO_BYTE(i); t := p; p := q; q := r; r := t; END_FOR;
+END_PROGRAM)");
+}
+
 uint32_t asked(const char* name, uint32_t otherwise) {
   const char* const text = std::getenv(name);
   return text == nullptr ? otherwise : static_cast<uint32_t>(std::strtoul(text, nullptr, 10));
