@@ -56,7 +56,7 @@ SourceLocation SourceMap::locate(SourcePos pos) const {
   uint32_t offset = pos.offset - file.base;
   auto after = std::upper_bound(file.line_starts.begin(), file.line_starts.end(), offset);
   uint32_t start = *(after - 1);
-  // Of what has a place in a very long line, nothing looks for its end.
+  // No search for the end: it would cost the length of the line for each finding in it.
   const size_t end = after == file.line_starts.end() ? text.size() : *after - 1;
   std::string_view line = text.substr(start, end - start);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);

@@ -9,10 +9,11 @@
 
 namespace vm::native {
 
-// Limits are smaller: nobody else could say so (counted.h).
+// A limit AND this is the limit: all limits are smaller. So is_far_from_the_ends() knows that
+// (counted.h).
 inline constexpr uint64_t kSmall = (uint64_t{1} << 61) - 1;
 
-// What handles of a loop are called behind it.
+// The value that stands for a handle of the loop [head, last] outside of it.
 struct Renamed {
   Val to = kNone;
   Block head = 0;
@@ -33,10 +34,10 @@ class Walk {
         loop_(f.loops[loop]),
         front_(loop_.head - 1) {}
 
-  // Does every pointer that the loop follows come from before it, or is one that the loop moves?
+  // Does each pointer that the loop follows come from before it, or is it one that the loop moves?
   bool find();
 
-  // `uses`: by value.
+  // After find(). `uses`: how often each value is used. `renames` gets what is to be renamed.
   void change(const std::vector<uint32_t>& uses, Constants& constants, Renames& renames);
 
  private:
@@ -96,8 +97,7 @@ class Walk {
 
   void begin(Walker& w);
 
-  // Does the variable of the pointer hold one of these? Its bytes begin so far behind theirs, or
-  // theirs behind its.
+  // Leaves when the pointer's variable and this stretch have bytes in common.
   void ask(const Question& q, const Walker& w);
 
   // The parameter is a distance. What still wants the handle gets it at the block's beginning.
@@ -112,8 +112,8 @@ class Walk {
 
   void block(Block b);
 
-  // Ways forward alone lead here, so what they bring has its distance; but a way that lies behind
-  // has none yet, and there is none.
+  // All ways to a block that is no head come from blocks before it, so the arguments have their
+  // distances already.
   void params(Block b);
 
   Val append(Op op, uint8_t width, Val a, Val b, Block block);
@@ -130,8 +130,8 @@ class Walk {
   bool is_covered(Val distance, int64_t bytes, Block b) const;
   void cover(Val distance, uint64_t bytes, Block b);
 
-  // p[i]: a handle that is made to be resolved at once needs no question of its own; where the one
-  // of the RESOLVE is not answered, the interpreter makes it.
+  // p[i]: a handle that is resolved at once and wanted by nothing else needs no question of its
+  // own. Where the RESOLVE finds no bytes, the interpreter moves the handle, too.
   void find_steps(const std::vector<uint32_t>& uses);
 
   void move(uint32_t number, Block b);

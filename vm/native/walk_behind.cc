@@ -21,8 +21,8 @@ void Walk::count() {
     const Walker* const w = asked(end.in[i]);
     const Val other = end.in[1 - i];
     if (w == nullptr || !to_front(other)) continue;
-    // Of the first byte, seen from what the loop begins with: a pointer that is not walked with
-    // is far behind it.
+    // The place of the first byte in the order, from where the pointer is when the loop begins. So
+    // it is right, too, for a pointer without a variable, which is 2^32 behind it.
     const Val now = in_front(Op::kXor, 8, w->begin, constant(kOrder, 8));
     const Val own = in_front(Op::kSub, 8, now, w->distance);
     Val more = in_front(Op::kSub, 8, other, own);
