@@ -119,8 +119,8 @@ bool Facts::follows_bytes(uint32_t i) const {
   if (!host::kFollowsHandles || code_[i].opcode() != Opcode::RESOLVE) return false;
   const ir::TypeId type = ir::region_of_field(extension(i).x()).type;
   const uint64_t size = image_->layouts[type].size;
-  return !resolves_instance(i) && size != 0 && size < kMostBytes && extension(i).y() < kMostBytes &&
-         !has_slots(type);
+  const bool fits = size != 0 && size < kMostBytes && extension(i).y() < kMostBytes;
+  return fits && !has_slots(type);  // as those of instances have
 }
 
 // Innermost loops that follow pointers and call nothing.
