@@ -162,7 +162,7 @@ std::string diagram_text(Node body, const std::string& name, Reporter& report) {
   xml::KeptDrawing& kept =
       report.out().kept.drawings[base::fold_name(whole ? own : report.pou() + "." + own)];
   kept = {made, {}, report.origin(body) == body ? plain_xml(body) : std::string()};
-  xml::DiagramText out = xml::diagram_text(made, body, names_around(body), report);
+  xml::DiagramText out = xml::diagram_text(made, names_around(body), report.as_fbd(body));
   if (!out.rows.empty()) {
     base::Diagnostics unheard;
     kept.text = network::canonical(frontend::fbd::read(out.rows, base::SourcePos{0}, unheard));

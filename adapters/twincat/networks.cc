@@ -16,18 +16,6 @@ using base::same_name;
 using network::Element;
 using xml::Code;
 
-// A number, a text, TRUE, INT#5: nothing that could change.
-bool is_literal(std::string_view operand) {
-  if (operand.empty() || same_name(operand, "TRUE") || same_name(operand, "FALSE")) return true;
-  const char quote = operand[0];
-  if (quote == '\'' || quote == '"') return operand.find(quote, 1) == operand.size() - 1;
-  const bool one = std::all_of(operand.begin(), operand.end(), [](char c) {
-    return c == '#' || c == '.' || c == ':' || xml::is_name("_" + std::string(1, c));
-  });
-  const bool digit = operand[0] >= '0' && operand[0] <= '9';
-  return one && (digit || operand.find('#') != std::string_view::npos);
-}
-
 Modifier storage_of(uint32_t flags) {
   if ((flags & kSet) != 0) return (flags & kNegation) != 0 ? Modifier::kReset : Modifier::kSet;
   return modifier_of(flags);
@@ -138,7 +126,7 @@ Wire NetworkReader::value(const Item& item) {
 Wire NetworkReader::read_once(Wire wire, Node at) {
   if (wire.from.size() != 1) return wire;
   const Element& source = out_.elements[wire.from[0].element];
-  if (source.kind != Kind::kSource || is_literal(source.operand.text)) return wire;
+  if (source.kind != Kind::kSource || xml::is_literal(source.operand.text)) return wire;
   Element block;
   block.kind = Kind::kBlock;
   block.type.text = "MOVE";

@@ -99,7 +99,7 @@ std::string ObjectWriter::networks(Node form, const std::string& what) {
   for (Node owner = form.parent(); owner && owner != object_.parent(); owner = owner.parent()) {
     names += ' ' + xml::text_of(xml::child(owner, "Declaration"));
   }
-  return xml::diagram_text(*body, form, names, report_).text;
+  return xml::diagram_text(*body, names, report_.as_fbd(form)).text;
 }
 
 std::string ObjectWriter::body(Node owner, const std::string& what) {

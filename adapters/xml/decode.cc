@@ -139,6 +139,14 @@ std::string as_utf8(std::string_view bytes) {
   return out;
 }
 
+std::string text_as_utf8(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  Decoded out = from_utf8(bytes);
+  if (!out.error.empty()) out = from_latin(bytes, true);
+  std::replace(out.text.begin(), out.text.end(), '\0', ' ');
+  return std::move(out.text);
+}
+
 Decoded to_utf8(std::string_view bytes) {
   Decoded out = decode(bytes);
   if (!out.error.empty()) return out;

@@ -1,10 +1,11 @@
 // A drawing that was imported -> the text that comes in for it.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
-#include "adapters/xml/document.h"
 #include "frontend/network/network.h"
 
 namespace xml {
@@ -14,9 +15,11 @@ struct DiagramText {
   std::string rows;  // of a ladder that became FBD: those of the text; else empty
 };
 
-// A ladder that has no form as text becomes FBD, and a note says why (W0075), at `drawing`. No wire
-// is called like a name in `taken`.
-DiagramText diagram_text(const frontend::network::Body& body, Node drawing, std::string_view taken,
-                         Reporter& report);
+// Why a ladder became FBD (W0075); the network that made it so, from 1, or 0.
+using AsFbd = std::function<void(uint32_t network, const std::string& why)>;
+
+// A ladder that has no form as text becomes FBD. No wire is called like a name in `taken`.
+DiagramText diagram_text(const frontend::network::Body& body, std::string_view taken,
+                         const AsFbd& as_fbd);
 
 }  // namespace xml

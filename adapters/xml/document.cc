@@ -4,12 +4,6 @@
 #include "base/limits.h"
 
 namespace xml {
-namespace {
-
-constexpr size_t kMaxFindings = 10000;
-
-}  // namespace
-
 Document::Document(std::string name, std::string_view bytes, base::SourceMap& sources,
                    Imported& out) {
   if (bytes.size() > base::kMaxXmlBytes) {
@@ -96,16 +90,16 @@ Node Reporter::origin(Node node) const {
 }
 
 void Reporter::add(Code code, Node at, std::string text, std::string fix) {
-  if (out_.findings.size() == kMaxFindings) {
-    text = "there are more findings than " + std::to_string(kMaxFindings) + "; these are left out";
-    fix.clear();
-  } else if (out_.findings.size() > kMaxFindings) {
-    // An error is not lost among notes.
-    const bool error = base::diagnostic_row(code).severity == base::Severity::kError;
-    if (!error || out_.findings.size() > 2 * kMaxFindings) return;
-  }
-  out_.findings.push_back(
-      {code, document_.span(origin(at)), pou_, network_, base::printable(text), std::move(fix)});
+  out_.add_finding(
+      {code, document_.span(origin(at)), pou_, network_, std::move(text), std::move(fix)});
+}
+
+AsFbd Reporter::as_fbd(Node drawing) {
+  return [this, drawing](uint32_t network, const std::string& why) {
+    set_network(network);
+    add(Code::kLadderAsFbd, drawing, why);
+    set_network(0);
+  };
 }
 
 std::string_view Reporter::required(Node node, const char* name) {

@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "adapters/xml/diagram_text.h"
 #include "adapters/xml/imported.h"
 #include "base/result.h"
 
@@ -30,6 +31,8 @@ struct Decoded {
 Decoded to_utf8(std::string_view bytes);
 // Bytes that are no UTF-8 are read as Latin-1, as the compiler reads sources.
 std::string as_utf8(std::string_view bytes);
+// UTF-8 of a text that declares nothing: UTF-8, or else windows-1252. NUL becomes a blank.
+std::string text_as_utf8(std::string_view bytes);
 
 // How documents and parts of them are parsed.
 inline constexpr unsigned kAsRead = pugi::parse_default | pugi::parse_ws_pcdata_single;
@@ -66,6 +69,8 @@ class Reporter {
   void set_pou(std::string pou) { pou_ = std::move(pou), network_ = 0; }
   const std::string& pou() const { return pou_; }
   void set_network(uint32_t network) { network_ = network; }
+  // For diagram_text(): adds W0075 at `drawing`.
+  AsFbd as_fbd(Node drawing);
   // An attribute that has to be there; empty, after a report, when it is not.
   std::string_view required(Node node, const char* attribute);
   // The same for an attribute that is a name of Structured Text.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/diagnostics_render.h"
 #include "base/name_case.h"
 
 namespace xml {
@@ -25,6 +26,20 @@ std::string Imported::add_source(std::string_view name, std::string text) {
   std::string own = names.take(name);
   sources.push_back({own + ".st", std::move(text)});
   return own;
+}
+
+void Imported::add_finding(Finding finding) {
+  constexpr size_t kMaxFindings = 10000;
+  finding.text = base::printable(finding.text);
+  if (findings.size() == kMaxFindings) {
+    finding.text =
+        "there are more findings than " + std::to_string(kMaxFindings) + "; these are left out";
+    finding.fix.clear();
+  } else if (findings.size() > kMaxFindings) {
+    const bool error = base::diagnostic_row(finding.code).severity == base::Severity::kError;
+    if (!error || findings.size() > 2 * kMaxFindings) return;
+  }
+  findings.push_back(std::move(finding));
 }
 
 bool Imported::failed() const {

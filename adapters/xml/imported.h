@@ -75,6 +75,9 @@ struct Imported {
   // The same name as returned, for sources that say it (lists of global variables).
   std::string add_source(std::string_view name, std::string text);
 
+  // The finding, unless there are very many already. Errors are not lost among notes.
+  void add_finding(Finding finding);
+
   bool failed() const;  // is one of the findings an error?
 
   Names names;  // of `sources`

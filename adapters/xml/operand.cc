@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adapters/xml/document.h"
+#include "base/name_case.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/lex/operands.h"
 
@@ -85,6 +86,18 @@ bool is_dotted_name(std::string_view text) {
     if (text.empty()) return true;
   }
   return false;
+}
+
+bool is_literal(std::string_view operand) {
+  if (operand.empty() || base::same_name(operand, "TRUE") || base::same_name(operand, "FALSE"))
+    return true;
+  const char quote = operand[0];
+  if (quote == '\'' || quote == '"') return operand.find(quote, 1) == operand.size() - 1;
+  const bool one = std::all_of(operand.begin(), operand.end(), [](char c) {
+    return c == '#' || c == '.' || c == ':' || is_name("_" + std::string(1, c));
+  });
+  const bool digit = operand[0] >= '0' && operand[0] <= '9';
+  return one && (digit || operand.find('#') != std::string_view::npos);
 }
 
 }  // namespace xml

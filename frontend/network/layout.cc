@@ -82,6 +82,13 @@ size_t Placer::right_run(const Series& items) const {
   return count;
 }
 
+// Branches behind branches up to the right rail: where they begin at the left one, each row would
+// look like a rung of its own, if the first did not meet in front of where the next part.
+bool joins_to_end(const Series& items) {
+  return items.back().end && std::none_of(items.begin(), items.end(),
+                                          [](const Item& item) { return item.branches.empty(); });
+}
+
 Placer::Extent Placer::series(const Series& items, Start start) {
   Extent extent{1, start.column};
   size_t right = start.ends ? right_run(items) : 0;
@@ -96,6 +103,9 @@ Placer::Extent Placer::series(const Series& items, Start start) {
     }
     // Branches that begin at the rail and meet again have rows of their own there.
     bool at_rail = i == 0 && start.at_rail && !item.end;
+    if (i == 1 && start.at_rail && joins_to_end(items)) {
+      out_.columns = std::max(out_.columns, ++extent.column);
+    }
     if (!at_rail) wire(start.row, wire_from, extent.column, from_rail);
     Extent part = parts(item, {start.row, extent.column, at_rail, item.end});
     extent.rows = std::max(extent.rows, part.rows);

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Random ladders, function block diagrams and charts as TwinCAT stores them do what the same trees and
-# graphs mean in ST (tests/vendors/random_twincat.py, random_charts.py).
+# Random ladders, function block diagrams and charts as TwinCAT stores them, and ladders and diagrams
+# as CODESYS V2.3 exports them, do what the same trees and graphs mean in ST
+# (tests/vendors/random_twincat.py, random_charts.py, random_text_export.py).
 # drawn_random.sh SOURCES BUILD [FIRST COUNT]
 . "$(dirname "$0")/lib.sh"
 first=${3:-1}
@@ -22,6 +23,11 @@ while [ "$seed" -lt $((first + count)) ]; do
   all='--print MAIN.all'
   for view in Ld Fbd; do
     python3 "$source_dir/tests/vendors/random_twincat.py" "$seed" $view made || fail "no program of seed $seed"
+    compare $view 128
+    grep -q '^MAIN.all=[1-9]' out || fail "seed $seed, $view: nothing happens"
+  done
+  for view in LD FBD; do
+    python3 "$source_dir/tests/vendors/random_text_export.py" "$seed" $view made || fail "no export of seed $seed"
     compare $view 128
     grep -q '^MAIN.all=[1-9]' out || fail "seed $seed, $view: nothing happens"
   done

@@ -7,9 +7,7 @@
 #include "adapters/xml/document.h"
 #include "base/check.h"
 
-inline void check_imported(const xml::Document& document, const xml::Imported& out,
-                           const base::SourceMap& sources) {
-  base::check(document.root() || out.failed(), "a document that is not read has an error");
+inline void check_imported(const xml::Imported& out, const base::SourceMap& sources) {
   for (const xml::MadeSource& made : out.sources) {
     base::check(made.name.ends_with(".st") &&
                     xml::is_name(std::string_view(made.name).substr(0, made.name.size() - 3)),
@@ -20,4 +18,10 @@ inline void check_imported(const xml::Document& document, const xml::Imported& o
     base::check(finding.span.begin.offset <= sources.text(0).size(), "a finding has a place");
     base::check(!finding.text.empty(), "a finding says something");
   }
+}
+
+inline void check_imported(const xml::Document& document, const xml::Imported& out,
+                           const base::SourceMap& sources) {
+  base::check(document.root() || out.failed(), "a document that is not read has an error");
+  check_imported(out, sources);
 }

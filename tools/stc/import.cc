@@ -67,8 +67,7 @@ base::Status Import::read(const std::vector<std::string>& paths) {
     }
     for (const std::string& file : *files) {
       if (!is_importable(file)) {
-        return base::Error{base::Refusal::kUsage,
-                           file + ": imported are .xml .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj"};
+        return base::Error{base::Refusal::kUsage, file + ": imported are " + kImportable};
       }
       base::Status status = importer_.add(file);
       if (!status.ok()) return status;

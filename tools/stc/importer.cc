@@ -9,6 +9,7 @@
 #include "tools/common/files.h"
 #ifdef STC_HAS_XML
 #include "adapters/plcopen/plcopen.h"
+#include "adapters/text_export/text_export.h"
 #include "adapters/twincat/twincat.h"
 #endif
 
@@ -53,7 +54,20 @@ bool is_twincat(const std::string& path) {
 }
 
 bool is_importable(const std::string& path) {
-  return is_twincat(path) || has_extension(path, {".xml"});
+  return is_twincat(path) || has_extension(path, {".xml", ".exp"});
+}
+
+bool needs_import(const std::string& path) {
+  if (!has_extension(path, {".exp"})) return is_importable(path);
+#ifdef STC_HAS_XML
+  const base::Result<std::string> bytes = tools::read_text(path, base::kMaxXmlBytes);
+  return bytes.ok() && text_export::is_more_than_text(text_export::split(*bytes, {0}));
+#else
+  // What is drawn is refused by add().
+  const base::Result<std::string> bytes = tools::read_text(path);
+  return bytes.ok() && (bytes->find("\n_LD_BODY") != std::string::npos ||
+                        bytes->find("\n_FBD_BODY") != std::string::npos);
+#endif
 }
 
 std::vector<std::string> without_listed(const std::vector<std::string>& paths) {
@@ -101,6 +115,8 @@ struct Importer::Readers {
 #ifdef STC_HAS_XML
   xml::Imported current;
   twincat::Importer twincat{current};
+  // Read when all are there: one declares what the boxes of another call.
+  std::vector<std::pair<std::string, text_export::Export>> exports;  // by path
 #endif
 };
 
@@ -122,7 +138,7 @@ base::Status Importer::add(const std::string& path) {
 #else
   return base::Error{base::Refusal::kFileUnreadable,
                      path +
-                         ": XML is not part of this stc: it was built without pugixml (package "
+                         ": import is not part of this stc: it was built without pugixml (package "
                          "libpugixml-dev)"};
 #endif
 }
@@ -143,6 +159,7 @@ void Importer::take(const std::string& origin, xml::Imported& out) {
 }
 
 void Importer::read(const std::string& path, const std::string& bytes) {
+  if (has_extension(path, {".exp"})) return read_export(path, bytes);
   xml::Imported& out = readers_->current;
   const xml::Document document(path, bytes, sources_, out);
   if (!document.root()) return take(path, out);
@@ -180,9 +197,38 @@ void Importer::read(const std::string& path, const std::string& bytes) {
   take(path, out);
 }
 
+void Importer::read_export(const std::string& path, const std::string& bytes) {
+  const bool fits = bytes.size() <= base::kMaxXmlBytes;
+  const base::SourcePos begin =
+      sources_.add(path, fits ? xml::text_as_utf8(bytes) : std::string(), base::TextUse::kQuoted);
+  if (!fits) {
+    readers_->current.add_finding({xml::Code::kXmlLimit,
+                                   {begin, begin},
+                                   {},
+                                   0,
+                                   "larger than " + std::to_string(base::kMaxXmlBytes) + " bytes",
+                                   {}});
+    return take(path, readers_->current);
+  }
+  const std::string_view text = sources_.text(sources_.file_count() - 1);
+  readers_->exports.emplace_back(path, text_export::split(text, begin));
+}
+
 void Importer::finish() {
   readers_->twincat.add_tasks();
   take("tasks", readers_->current);
+  if (readers_->exports.empty()) return;
+  text_export::PinNames pins;
+  for (const auto& [path, one] : readers_->exports) text_export::add_pins(one, pins);
+  for (uint32_t file = 0; file < sources_.file_count(); ++file) {
+    if (sources_.is_source(file)) pins.add(sources_.text(file));
+  }
+  pins.add_library();
+  for (const auto& [path, one] : readers_->exports) {
+    text_export::import(one, pins, readers_->current);
+    take(path, readers_->current);
+  }
+  readers_->exports.clear();
 }
 
 #else

@@ -14,10 +14,13 @@
 
 namespace stc {
 
-// By its extension: .xml .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj
+// By its extension: .xml, .exp, .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj
 bool is_importable(const std::string& path);
+inline constexpr const char* kImportable = ".xml .exp .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj";
 // Is it a file of TwinCAT by its name? Not by .xml, which many other files have.
 bool is_twincat(const std::string& path);
+// Does it have to be imported? An .exp is a source where all of it is text.
+bool needs_import(const std::string& path);
 
 class Importer {
  public:
@@ -43,6 +46,7 @@ class Importer {
  private:
   struct Readers;  // of what is read together
   void read(const std::string& path, const std::string& bytes);
+  void read_export(const std::string& path, const std::string& bytes);
   void take(const std::string& origin, xml::Imported& out);
 
   base::SourceMap& sources_;

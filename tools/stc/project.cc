@@ -141,7 +141,7 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
     base::Result<std::vector<std::string>> files = expand(path, project);
     if (!files.ok()) return files.error();
     for (const std::string& file : *files) {
-      if (is_importable(file)) {
+      if (needs_import(file)) {
         base::Status status = importer.add(file);
         if (!status.ok()) return status.error();
         continue;

@@ -69,8 +69,7 @@ base::Result<Files> matching_files(const fs::path& folder, const std::string& el
   rest.push_back("**");
   return files_below(top, [&](const std::string& path) {
     const fs::path below = fs::path(path).lexically_relative(top);
-    return (is_source_name(path) || is_importable(path)) &&
-           path_matches(rest, parts_of(below));
+    return (is_source_name(path) || is_importable(path)) && path_matches(rest, parts_of(below));
   });
 }
 

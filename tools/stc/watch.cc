@@ -218,7 +218,7 @@ class Watch {
     std::map<std::string, std::string> texts;
     for (const auto& [path, stamp] : stamps_) {
       const auto old = before.find(path);
-      if (old == before.end() || is_importable(path)) return false;
+      if (old == before.end() || needs_import(path)) return false;
       if (old->second == stamp) continue;
       base::Result<std::string> text = tools::read_text(path);
       if (!text.ok() || text->find('\0') != std::string::npos) return false;

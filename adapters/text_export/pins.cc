@@ -1,0 +1,87 @@
+#include "adapters/text_export/pins.h"
+
+#include "base/diagnostics.h"
+#include "base/name_case.h"
+#include "frontend/lex/lexer.h"
+#include "stdlib/sources.h"
+
+namespace text_export {
+namespace {
+
+using frontend::Token;
+using frontend::TokenKind;
+
+// One function block after FUNCTION_BLOCK.
+class Declaration {
+ public:
+  Declaration(std::string_view text, const std::vector<Token>& tokens, size_t at)
+      : text_(text), tokens_(tokens), at_(at) {}
+
+  Pins run() {
+    std::vector<std::string> in_outs;
+    bool inputs_follow = false;
+    for (; kind() != TokenKind::kEnd && kind() != TokenKind::kEndFunctionBlock; ++at_) {
+      const TokenKind section = kind();
+      if (section == TokenKind::kVarInput) {
+        inputs_follow = inputs_follow || !in_outs.empty();
+        names(pins_.left);
+      } else if (section == TokenKind::kVarInOut) {
+        names(in_outs);
+      } else if (section == TokenKind::kVarOutput) {
+        names(pins_.right);
+      }
+    }
+    pins_.unclear = inputs_follow;
+    pins_.left.insert(pins_.left.end(), in_outs.begin(), in_outs.end());
+    return std::move(pins_);
+  }
+
+ private:
+  TokenKind kind() const { return tokens_[at_].kind; }
+
+  // Up to END_VAR: `a, b : INT := c;`, `a AT %IW0 : INT;`
+  void names(std::vector<std::string>& out) {
+    bool declares = true;
+    for (++at_; kind() != TokenKind::kEnd && kind() != TokenKind::kEndVar; ++at_) {
+      if (kind() == TokenKind::kColon) declares = false;
+      if (kind() == TokenKind::kSemicolon) declares = true;
+      const TokenKind next = tokens_[at_ + 1].kind;
+      const bool named =
+          next == TokenKind::kComma || next == TokenKind::kColon || next == TokenKind::kAt;
+      if (!declares || !named || !frontend::is_name(kind())) continue;
+      out.emplace_back(text_.substr(tokens_[at_].begin, tokens_[at_].length));
+    }
+  }
+
+  std::string_view text_;
+  const std::vector<Token>& tokens_;
+  size_t at_;
+  Pins pins_;
+};
+
+}  // namespace
+
+void PinNames::add(std::string_view source) {
+  base::Diagnostics ignored;
+  const std::vector<Token> tokens = frontend::lex(source, {0}, ignored).tokens;
+  for (size_t i = 0; i + 1 < tokens.size(); ++i) {
+    if (tokens[i].kind != TokenKind::kFunctionBlock) continue;
+    const Token& name = tokens[i + 1];
+    const std::string folded = base::fold_name(source.substr(name.begin, name.length));
+    types_.emplace(folded,
+                   Declaration(source, tokens, i + 2 < tokens.size() ? i + 2 : i + 1).run());
+  }
+}
+
+void PinNames::add_library() {
+  for (const stdlib::LibrarySource& source : stdlib::library_sources()) {
+    if (stdlib::is_of_dialect(source, false)) add(source.text);
+  }
+}
+
+const Pins* PinNames::find(std::string_view type) const {
+  const auto found = types_.find(base::fold_name(type));
+  return found == types_.end() ? nullptr : &found->second;
+}
+
+}  // namespace text_export

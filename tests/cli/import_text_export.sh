@@ -1,0 +1,165 @@
+#!/bin/sh
+# Text exports (.EXP) of CODESYS V2.3 and TwinCAT 2: ladder and function block diagrams come in as
+# drawings, the rest as text; what is not known is an error with its place. drawn_random.sh compares
+# random ones with the same in ST.
+. "$(dirname "$0")/lib.sh"
+
+# Lines of a body: words of the form, and `name text` for what has an operand.
+contact() { printf '_LD_CONTACT\n%s\n_EXPRESSION\n_%s\n' "$1" "${2:-POSITIV}"; }
+operand() { printf '_OPERAND\n_EXPRESSION\n_POSITIV\n%s\n' "$1"; }
+value() { printf '_EXPRESSION\n_%s\n' "${1:-POSITIV}"; }
+output() { printf '_OUTPUT\n_%s\n_%s\n%s\n' "${2:-POSITIV}" "${3:-NO_SET}" "$1"; }
+network() { printf '_NETWORK\n%s\n_COMMENT\n%s\n_END_COMMENT\n' "${2:-}" "${1:-''}"; }
+no_boxes() { printf '\n\nENABLELIST : 0\nENABLELIST_END\n'; }
+attributes() {
+  printf "(* @NESTEDCOMMENTS := 'Yes' *)\n(* @PATH := '%s' *)\n(* @OBJECTFLAGS := '0, 8' *)\n(* @SYMFILEFLAGS := '2048' *)\n" "${1:-}"
+}
+marker="(* @END_DECLARATION := '0' *)"
+
+{
+  attributes '\/Pumps'
+  cat <<X
+PROGRAM PLC_PRG	(* the only
+one *)
+VAR
+	xStart, xStop: BOOL;	(* buttons *)
+	xMotor, xLate, xFull, xLocked: BOOL;
+	tDelay: TON;
+	fbMean: MEAN;
+	wLevel: WORD;
+	rLevel: REAL := 12.5;
+	tElapsed: TIME;
+	iCount, iMean, iN: INT;
+END_VAR
+$marker
+_LD_BODY
+_NETWORKS : 5
+X
+  network "'Start, held by the motor's own contact
+and its lock'"
+  printf '_LD_ASSIGN\n_LD_AND\n_LD_OPERATOR : 2\n_LD_OR\n_LD_OPERATOR : 2\n'
+  contact xStart; contact xMotor; value; contact xStop NEGATIV; value; value; no_boxes
+  printf '_OUTPUTS : 2\n'; output xMotor; output xLocked NEGATIV
+  network
+  printf '_LD_ASSIGN\n_LD_OR\n_LD_OPERATOR : 2\n'
+  contact xMotor; contact xStart; value; value; no_boxes
+  printf '_OUTPUTS : 2\n'; output xStart POSITIV SET; output xFull POSITIV SET
+  network "''" Again
+  printf '_LD_ASSIGN\n_FUNCTIONBLOCK\ntDelay\n_BOX_EXPR : 2\n'
+  contact xMotor; operand 'T#50ms'; value; printf 'TON\n_OUTPUTS : 1\n'; output tElapsed; value
+  no_boxes; printf '_OUTPUTS : 1\n'; output xLate
+  network
+  printf '_LD_ASSIGN\n'; contact xLate; value
+  printf '\n\nENABLELIST : 1\n_ASSIGN\n_OPERATOR\n_BOX_EXPR: 1\n_ENABLED\n'
+  operand rLevel; value; printf 'REAL_TO_WORD\n'; value; printf '_OUTPUTS : 1\n'; output wLevel
+  printf 'ENABLELIST_END\n_OUTPUTS : 0\n'
+  network
+  printf '_LD_ASSIGN\n_FUNCTIONBLOCK\nfbMean\n_BOX_EXPR : 2\n'
+  contact xLate; operand iCount; value; printf 'MEAN\n_OUTPUTS : 1\n'; output iMean; value
+  no_boxes; printf '_OUTPUTS : 0\nEND_PROGRAM\nACTION Count:\n_FBD_BODY\n_NETWORKS : 1\n'
+  network
+  printf '_ASSIGN\n_OPERATOR\n_BOX_EXPR : 2\n'; operand iCount
+  printf '_OPERATOR\n_BOX_EXPR : 2\n'; operand iCount; operand 2; value; printf 'MUL\n'
+  value; printf 'ADD\n'; value; printf '_OUTPUTS : 1\n'; output iCount
+  printf "END_ACTION\nACTION Text:\n(* @TEXT_IMPLEMENTATION := 'ST' *)\niN := iN + 1;\nEND_ACTION\n\n"
+  attributes
+  printf "TYPE ST_Pump :\nSTRUCT\n\tspeed: INT;\nEND_STRUCT\nEND_TYPE\n%s\n" "$marker"
+  printf "(* @NESTEDCOMMENTS := 'Yes' *)\n(* @GLOBAL_VARIABLE_LIST := 'Plant' *)\n(* @PATH := '' *)\n"
+  printf "VAR_GLOBAL\n\tpump: ST_Pump;\n\ttext: STRING := 'END_VAR \200';\nEND_VAR\nVAR_GLOBAL CONSTANT\n\tMAX_N: INT := 3;\nEND_VAR\n"
+  printf "(* @OBJECT_END := 'Plant' *)\n(* @CONNECTIONS := Plant\nFILENAME : ''\nFILETIME : 0\nEXPORT : 0\nNUMOFCONNECTIONS : 0\n*)\n"
+  printf "LIBRARY\nStandard.lib 5.6.98 12:03:02\n(* @LIBRARYSYMFILEINFO := '0' *)\nNumOfPOUs: 1\nTON: 0\nEND_LIBRARY\n"
+  printf "LIBRARY\nPumps.lib 5.6.98 12:03:02\n(* @LIBRARYSYMFILEINFO := '0' *)\nNumOfPOUs: 1\nMEAN: 0\nEND_LIBRARY\n"
+  printf "PLC_CONFIGURATION\n_GLOBAL\nPROGRAM\nPLC_END\n"
+} | sed 's/$/\r/' >plant.EXP
+
+# The library is in ST, and its pins are known all the same.
+mkdir lib
+{
+  attributes
+  printf 'FUNCTION_BLOCK MEAN\nVAR_INPUT\n\tenable: BOOL;\n\tx: INT;\nEND_VAR\nVAR_OUTPUT\n\tready: BOOL;\n\ty: INT;\nEND_VAR\n%s\nready := enable;\nIF enable THEN y := (y + x) / 2; END_IF\nEND_FUNCTION_BLOCK\n' "$marker"
+} >lib/mean.exp
+
+needs_xml "$bin/stc" import plant.EXP lib/mean.exp -o made
+said 'plant.EXP -> made/PLC_PRG.st'
+said "W0071.*the library \`Standard.lib\` is part of stc"
+said "W0070.*the library \`Pumps.lib\` is used, and its text is not in the export"
+said "W0070.*\`PLC_CONFIGURATION\` begins a part that is not read"
+said '4 source.s., 0 error.s., 2 warning.s., 1 note.s.'
+grep -q 'WIRE mul1 := MUL(iCount, 2);' made/PLC_PRG.st || fail "no function block diagram"
+for row in "(\* Start, held by the motor's own contact" \
+  '|--\[ xStart \]--+--\[/ xStop \]--+--*( xMotor )--|' \
+  '|--\[ xMotor \]--+              +--*(/ xLocked )--|' \
+  '|--\[ xMotor \]--+----+--*(S xStart )--|' \
+  '|--\[ xStart \]--+    +--*(S xFull )--|' \
+  'Again:' \
+  'tDelay: TON  IN:=_, PT:=T#50ms, ET=>tElapsed \]' \
+  '|--\[ xLate \]--\[ wLevel := REAL_TO_WORD(rLevel) \]--*|' \
+  'fbMean: MEAN  enable:=_, x:=iCount, y=>iMean \]'; do
+  grep -q -- "$row" made/PLC_PRG.st || fail "not so: $row; $(cat made/PLC_PRG.st)"
+done
+grep -q "text: STRING := 'END_VAR €';" made/Plant.st || fail "windows-1252: $(cat made/Plant.st)"
+grep -q 'MAX_N: INT := 3;' made/Plant.st || fail "the second part of the list: $(cat made/Plant.st)"
+
+# Directly: the same program, whatever is a source of its own beside it.
+mkdir p && cp -r plant.EXP lib p/
+expect 0 stc build p --dialect codesys -o a.img
+expect 0 stc build made --dialect codesys -o b.img
+for image in a b; do
+  expect 0 stvm run $image.img --virtual-time --scans 30 --state
+  cp out $image
+done
+cmp -s a b || fail "imported, it is another program"
+[ "$(wc -l <a)" -ge 20 ] || fail "no state: $(cat a)"
+# What is text alone stays a source: messages have its own rows.
+sed 's/enable THEN/enabled THEN/' lib/mean.exp >wrong.exp
+expect 1 stc check wrong.exp --dialect codesys
+said '^wrong.exp:16:4: error'
+
+# --- what is not known
+body() { printf 'PROGRAM P\nVAR\n\ta, b: BOOL; f: FB; t: TON;\nEND_VAR\n%s\n%s\n_NETWORKS : %s\n' "$marker" "$1" "$2"; cat; printf 'END_PROGRAM\n'; }
+refused() {  # refused ROW REGEX: of bad.exp
+  expect 1 stc import bad.exp -o bad --force
+  said "^bad.exp:$1:[0-9]*: error.E1083.: POU P.*the body of P: $2"
+  grep -q "{error 'the body of P was not imported'}" bad/P.st || fail "it is taken for empty"
+  expect 1 stc check bad.exp --dialect codesys
+}
+rung() { network; printf '_LD_ASSIGN\n'; cat; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; }
+contact a | rung | body _LD_BODY 2 >bad.exp
+refused 7 'it says that it has 2 networks, and has 1'
+printf '_JUMP\n' | rung | body _LD_BODY 1 >bad.exp
+refused 14 'an element `_JUMP` is not known here'
+printf '_LD_STUFF\n_LD_OPERATOR : 1\n' | body _SFC_BODY 1 >bad.exp
+refused 6 '`_SFC_BODY` begins a language that is not read here'
+contact a | sed 's/_POSITIV/_SOMETIMES/' | rung | body _LD_BODY 1 >bad.exp
+refused 17 '`_SOMETIMES` stands where `_NEGATIV` is expected'
+contact 'a; b' | rung | body _LD_BODY 1 >bad.exp
+refused 14 'a contact is `a; b`, which is no expression'
+contact '???' | rung | body _LD_BODY 1 >bad.exp
+refused 14 'a contact has no variable; give its name'
+box() { printf '_FUNCTIONBLOCK\n%s\n_BOX_EXPR : 1\n' "$1"; contact a; value; printf '%s\n_OUTPUTS : %s\n' "$2" "${3:-0}"; }
+box f FB | rung | body _LD_BODY 1 >bad.exp
+refused 14 'the pins of `FB` have no names in an export, .*; import the export of its library'
+box t TON | rung | body _LD_BODY 1 >bad.exp
+refused 14 'the box `t` has 1 inputs, and TON declares 2'
+{
+  box f FB | rung | body _LD_BODY 1
+  printf 'FUNCTION_BLOCK FB\nVAR_IN_OUT\n\tx: BOOL;\nEND_VAR\nVAR_INPUT\n\ty: BOOL;\nEND_VAR\n%s\nEND_FUNCTION_BLOCK\n' "$marker"
+} >bad.exp
+refused 14 '`FB` declares VAR_IN_OUT in front of VAR_INPUT'
+contact a | body _FBD_BODY 1 >bad.exp
+refused 8 '`_LD_CONTACT` stands where `_NETWORK` is expected'
+{ network "''" 'no name'; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } |
+  body _LD_BODY 1 >bad.exp
+refused 8 'the label `no name` is no name'
+# A million levels, a million promised elements.
+{ network; printf '_ASSIGN\n'; awk 'BEGIN { for (i = 0; i < 1000000; ++i) print "_ASSIGN" }'; } | body _FBD_BODY 1 >bad.exp
+refused 269 'its elements are nested deeper than 256 levels'
+{ network; printf '_ASSIGN\n_OPERATOR\n_BOX_EXPR : 4000000000\n'; } | body _FBD_BODY 1 >bad.exp
+refused 15 '`_BOX_EXPR : 4000000000` has no number'
+# Cut off: an error outside of what is drawn, and nothing is taken for whole.
+contact a | rung | body _LD_BODY 1 | head -n 20 >bad.exp
+expect 1 stc import bad.exp -o bad --force
+said 'E1073.*PROGRAM P has no END_PROGRAM; the export was cut off'
+printf 'nothing\n' >bad.exp
+expect 1 stc import bad.exp -o bad --force
+said 'E1071.*there is no PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL in this export'
