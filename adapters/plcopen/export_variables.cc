@@ -75,6 +75,13 @@ bool Writer::put_variable(Node list, const VarBlock& block, const VarDecl& decl)
   }
   const bool unnamed = !decl.names.empty() && decl.names[0].text.starts_with("%");
   const bool edge = decl.edge != frontend::Edge::kNone && in_.form != Edition::kIec10;
+  if (edge) {
+    diagnostics_.add(
+        base::DiagnosticCode::kXmlTextOnly, decl.span,
+        "PLCopen XML has no word for R_EDGE and F_EDGE: it stands in the declaration as "
+        "text, which CODESYS reads and others leave out",
+        "declare a BOOL, and call R_TRIG or F_TRIG in the body");
+  }
   return !edge && !decl.binds && !unnamed;
 }
 

@@ -37,6 +37,13 @@ expect 1 stc export connected.st -o x.xml --without-sources
 said 'E1084.*connections of a program instance'
 [ ! -e x.xml ] || fail "a document was written in spite of errors"
 
+# An edge of an input has no place in TC6, and one in IEC 61131-10.
+printf 'FUNCTION_BLOCK F VAR_INPUT up : BOOL R_EDGE; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR f : F; END_VAR f(); END_PROGRAM\n' >edge.st
+expect 0 stc export edge.st -o edge.xml
+said 'edge\.st:1:28: warning\[W0074\].*no word for R_EDGE'
+expect 0 stc export edge.st -o edge10.xml --as 61131-10
+if grep -q W0074 err; then fail "IEC 61131-10 has edges"; fi
+
 # What the schema demands, also of drawings that are written as they were read
 # (tests/cli/export_schema.sh has the schema itself).
 cat >schema.st <<'S'
