@@ -19,6 +19,11 @@ expect 0 there stvm status --dir $plc
 said ': running$'
 expect 0 there journalctl -u stvm@line --no-pager
 said 'ready: BottlingLine'
+# What fails again and again stays down, outputs safe.
+expect 0 there systemctl show stvm@line -p StartLimitBurst -p StartLimitIntervalUSec -p RestartUSec
+said '^StartLimitBurst=10$'
+said '^StartLimitIntervalUSec=5min$'
+said '^RestartUSec=1s$'
 expect 0 there systemd-analyze security --threshold=25 stvm@line
 expect 0 there stvm change /usr/share/doc/stc/examples/bottling_line_v2 --dir $plc --allow-loss \
   --yes --permanent --allow-overrun
