@@ -27,6 +27,9 @@ std::string error_pragma(std::string text) {
 
 // The export of TwinCAT has CFC in a form of its own, too.
 std::string way_out(Node form) {
+  if (xml::is(form, "Drawing")) {
+    return "export the POU as PLCopen XML in CODESYS (Project, Export PLCopenXML), and import that";
+  }
   if (xml::is(form, "CFC")) return "write it in ST, ladder or FBD in TwinCAT";
   return "export the POU as PLCopen XML in TwinCAT (Export PLCopenXML), and import that file";
 }
@@ -126,8 +129,10 @@ std::string ObjectWriter::body(Node owner, const std::string& what) {
       out += text.empty() ? error_pragma("the body of " + what + " was not imported") : text;
       continue;
     }
-    const std::string text = "the body of " + what + " is in " +
-                             std::string(xml::local_name(form)) +
+    const std::string how = xml::is(form, "Drawing")
+                                ? "drawn, and stands here as the inside of the editor"
+                                : "in " + std::string(xml::local_name(form));
+    const std::string text = "the body of " + what + " is " + how +
                              ", which is documented nowhere and cannot be imported";
     const std::string fix = way_out(form);
     report_.add(Code::kGraphicalBody, form, text, fix);
@@ -246,8 +251,12 @@ void Importer::add_task(Node node, Reporter& report) {
 
 void Importer::add_object(const xml::Document& document) {
   Reporter report(document, out_);
+  add_objects(document.root(), report);
+}
+
+void Importer::add_objects(Node root, Reporter& report) {
   bool found = false;
-  for (Node object : xml::children(document.root())) {
+  for (Node object : xml::children(root)) {
     const std::string_view kind = xml::local_name(object);
     report.set_pou(std::string(xml::attribute(object, "Name")));
     if (kind == "Task") {
@@ -272,7 +281,7 @@ void Importer::add_object(const xml::Document& document) {
     }
   }
   if (!found && !out_.failed()) {
-    report.add(Code::kUnknownXml, document.root(), "there is nothing in this <TcPlcObject>");
+    report.add(Code::kUnknownXml, root, "there is no POU, type or list of variables in this file");
   }
 }
 

@@ -19,6 +19,8 @@ class Importer {
  public:
   explicit Importer(xml::Imported& out) : out_(out) {}
   void add_object(const xml::Document& document);
+  // The objects below `root`, as those of CODESYS (codesys/export_file.h).
+  void add_objects(xml::Node root, xml::Reporter& report);
   void add_tasks();
 
  private:

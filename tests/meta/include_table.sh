@@ -25,6 +25,7 @@ adapters/modbus: ir/types ir/bytecode vm/io vm/runtime
 adapters/keys: online_change/package/signed_file.h
 adapters/mqtt:
 adapters/xml: frontend/lex frontend/network
+adapters/codesys: adapters/xml
 adapters/text_export: adapters/xml frontend/lex frontend/network stdlib
 adapters/twincat: adapters/xml frontend/network
 adapters/plcopen: adapters/xml frontend/network frontend/ladder frontend/fbd frontend/lex frontend/parse ir/types
@@ -34,7 +35,7 @@ online_change/package: ir linker online_change/diff online_change/plan
 online_change/apply: ir/types ir/program/ir.h ir/bytecode online_change vm
 online_change/store: ir/types ir/program/ir.h ir/bytecode online_change/diff online_change/plan online_change/package online_change/apply vm
 tools/common: ir online_change/diff online_change/plan online_change/package vm/load
-tools/stc: ir frontend linker workspace online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load vm/native tools/common adapters/xml adapters/plcopen adapters/text_export adapters/twincat adapters/keys
+tools/stc: ir frontend linker workspace online_change/diff online_change/plan online_change/package stdlib vm/exec vm/load vm/native tools/common adapters/xml adapters/codesys adapters/plcopen adapters/text_export adapters/twincat adapters/keys
 tools/stvm_agent: tools/common tools/stvm adapters/mqtt
 tools/stvm_fleet: tools/common tools/stvm adapters/mqtt
 tools/stvm: ir/types ir/program/ir.h ir/bytecode vm online_change tools/common adapters

@@ -8,6 +8,7 @@
 #include "base/name_case.h"
 #include "tools/common/files.h"
 #ifdef STC_HAS_XML
+#include "adapters/codesys/export_file.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/text_export/text_export.h"
 #include "adapters/twincat/twincat.h"
@@ -22,6 +23,10 @@ bool has_extension(const std::string& path, std::initializer_list<const char*> e
   const std::string own = fs::path(path).extension().string();
   return std::any_of(extensions.begin(), extensions.end(),
                      [&](const char* extension) { return base::same_name(own, extension); });
+}
+
+bool is_twincat(const std::string& path) {
+  return has_extension(path, {".TcPOU", ".TcDUT", ".TcGVL", ".TcIO", ".TcTTO", ".plcproj"});
 }
 
 #ifdef STC_HAS_XML
@@ -49,12 +54,12 @@ std::string find_listed(const fs::path& folder, const std::string& listed) {
 
 }  // namespace
 
-bool is_twincat(const std::string& path) {
-  return has_extension(path, {".TcPOU", ".TcDUT", ".TcGVL", ".TcIO", ".TcTTO", ".plcproj"});
+bool is_foreign(const std::string& path) {
+  return is_twincat(path) || has_extension(path, {".export"});
 }
 
 bool is_importable(const std::string& path) {
-  return is_twincat(path) || has_extension(path, {".xml", ".exp"});
+  return is_foreign(path) || has_extension(path, {".xml", ".exp"});
 }
 
 bool needs_import(const std::string& path) {
@@ -186,6 +191,12 @@ void Importer::read(const std::string& path, const std::string& bytes) {
                      (found.empty() ? "there is no such file" : "it cannot be read"));
       }
     }
+  } else if (codesys::is_export(document)) {
+    xml::Reporter report(document, out);
+    codesys::Objects objects;
+    codesys::read_objects(document, report, objects);
+    report.set_origins(&objects.origins);
+    readers_->twincat.add_objects(objects.document.first_child(), report);
   } else if (plcopen::is_document(document)) {
     plcopen::import(document, out);
   } else {

@@ -14,11 +14,12 @@
 
 namespace stc {
 
-// By its extension: .xml, .exp, .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj
+// By its extension (kImportable).
 bool is_importable(const std::string& path);
-inline constexpr const char* kImportable = ".xml .exp .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj";
-// Is it a file of TwinCAT by its name? Not by .xml, which many other files have.
-bool is_twincat(const std::string& path);
+inline constexpr const char* kImportable =
+    ".xml .exp .export .TcPOU .TcDUT .TcGVL .TcIO .TcTTO .plcproj";
+// Is it a file of TwinCAT or CODESYS by its name? Not by .xml, which many other files have.
+bool is_foreign(const std::string& path);
 // Does it have to be imported? An .exp is a source where all of it is text.
 bool needs_import(const std::string& path);
 

@@ -102,7 +102,7 @@ base::Result<Files> source_files(const std::string& path) {
 
 base::Result<Files> importable_files(const std::string& path, bool any_xml) {
   auto found = files_below(path, [&](const std::string& file) {
-    return any_xml ? is_importable(file) : is_twincat(file);
+    return any_xml ? is_importable(file) : is_foreign(file);
   });
   if (!found.ok()) return found;
   return without_listed(*found);
