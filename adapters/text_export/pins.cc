@@ -37,7 +37,8 @@ class Declaration {
   }
 
  private:
-  TokenKind kind() const { return tokens_[at_].kind; }
+  // Behind the end, too: a section may reach up to there.
+  TokenKind kind() const { return at_ < tokens_.size() ? tokens_[at_].kind : TokenKind::kEnd; }
 
   // Up to END_VAR: `a, b : INT := c;`, `a AT %IW0 : INT;`
   void names(std::vector<std::string>& out) {
