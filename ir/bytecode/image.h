@@ -142,6 +142,7 @@ struct IoBinding {
   DirectAddress address;
   uint32_t data = 0;  // offset of the variable
   TypeId type;
+  friend bool operator==(const IoBinding&, const IoBinding&) = default;
 };
 
 // What some bits of the process image become when their task stops, and when everything does:

@@ -26,9 +26,8 @@ class SystemEdits {
   SystemEdits(const ir::Image& old_image, const ir::Image& new_image)
       : old_(old_image),
         new_(new_image),
-        old_natural_(ir::natural_layouts(old_image.types)),
-        new_natural_(ir::natural_layouts(new_image.types)),
-        match_(match_instances(old_image, new_image)) {}
+        same_instances_(old_image.types.is_one_with(new_image.types) &&
+                        old_image.instances.is_one_with(new_image.instances)) {}
 
   std::vector<SystemEdit> run() {
     attributes();
@@ -50,6 +49,8 @@ class SystemEdits {
   // RETAIN and CONSTANT belong to types, so the first instance of each stands for all, and says how
   // many there are.
   void attributes() {
+    if (same_instances_) return;
+    match_ = match_instances(old_, new_);
     std::map<std::pair<uint32_t, uint32_t>, uint64_t> instances;  // by types
     std::vector<uint32_t> first;
     for (const uint32_t id : match_.new_order) {
@@ -86,6 +87,12 @@ class SystemEdits {
 
   // By path: what is at an address in only one version may be elsewhere in the other, or nowhere.
   void addresses() {
+    if (same_instances_ && old_.layouts.is_one_with(new_.layouts) &&
+        old_.globals == new_.globals && old_.io == new_.io) {
+      return;
+    }
+    old_natural_ = ir::natural_layouts(old_.types);
+    new_natural_ = ir::natural_layouts(new_.types);
     const std::map<std::string, const ir::IoBinding*> before = bindings(old_);
     const std::map<std::string, const ir::IoBinding*> after = bindings(new_);
     const Ranges outputs = outputs_after();
@@ -261,9 +268,10 @@ class SystemEdits {
 
   const ir::Image& old_;
   const ir::Image& new_;
-  ir::Layouts old_natural_;
+  const bool same_instances_;  // known without a look at them
+  ir::Layouts old_natural_;    // of addresses()
   ir::Layouts new_natural_;
-  InstanceMatch match_;
+  InstanceMatch match_;  // of attributes()
   std::vector<SystemEdit> rows_;
 };
 
