@@ -64,10 +64,10 @@ constexpr Row kRows[] = {
 
 constexpr Row kUnknownRow = {"", Kind::kUnknown, ""};
 
-// <Single Name="NAME">
+// <Single Name="NAME">; a <Null Name="NAME"> is none.
 Node member(Node owner, std::string_view name) {
   for (Node child : xml::children(owner)) {
-    if (xml::attribute(child, "Name") == name) return child;
+    if (xml::attribute(child, "Name") == name && !xml::is(child, "Null")) return child;
   }
   return {};
 }
@@ -84,20 +84,24 @@ std::string guid(Node owner, std::string_view name) {
   return out;
 }
 
+// Nothing but text.
+bool add_text(Node node, std::string& out) {
+  for (Node piece : node.children()) {
+    if (piece.type() != pugi::node_pcdata && piece.type() != pugi::node_cdata) return false;
+    out += piece.value();
+  }
+  return bool(node);
+}
+
 // <Single Name="Interface"> or "Implementation": its text as one, or, in older files, by rows.
 // false: it is no text.
 bool text_of(Node part, std::string& out) {
   const Node document = member(part, "TextDocument");
-  if (!document) return false;
-  if (const Node blob = member(document, "TextBlobForSerialisation")) {
-    for (Node piece : blob.children()) out += piece.value();
-    return true;
-  }
+  if (const Node blob = member(document, "TextBlobForSerialisation")) return add_text(blob, out);
   const Node rows = member(document, "TextLines");
   if (!rows) return false;
   for (Node row : xml::children(rows)) {
-    const Node text = member(row, "Text");
-    for (Node piece : text.children()) out += piece.value();
+    if (!add_text(member(row, "Text"), out)) return false;
     out += '\n';
   }
   return true;
@@ -110,6 +114,8 @@ struct Entry {
   std::string parent;
   const Row* row = &kUnknownRow;
   std::vector<uint32_t> children;  // below folders, too
+  bool written = false;
+  bool orphan = false;  // its owner is not there, which has been said
 };
 
 class Reader {
@@ -122,9 +128,9 @@ class Reader {
   void add(Node meta, Node object, Node node);
   void find_children();
   uint32_t owner_of(uint32_t entry) const;
-  void write(uint32_t entry, Node parent, uint32_t depth);
+  void write(uint32_t entry, Node parent, bool has_bodies);
   Node element(Node parent, const char* name, const Entry& entry);
-  void texts(Node to, const Entry& entry);
+  void texts(Node to, const Entry& entry, bool needs_body);
   void left_out(const Entry& entry);
 
   static constexpr uint32_t kNone = 0xffffffffu;
@@ -145,7 +151,10 @@ void Reader::add(Node meta, Node object, Node node) {
   for (const Row& row : kRows) {
     if (type == row.guid) entry.row = &row;
   }
-  by_guid_.emplace(guid(meta, "Guid"), static_cast<uint32_t>(entries_.size()));
+  const auto number = static_cast<uint32_t>(entries_.size());
+  if (!by_guid_.emplace(guid(meta, "Guid"), number).second) {
+    report_.add(Code::kXmlDoubleId, node, "two objects have the number of `" + entry.name + "`");
+  }
   entries_.push_back(std::move(entry));
 }
 
@@ -163,14 +172,18 @@ void Reader::find_entries(Node root) {
   root.traverse(finder);
 }
 
-// The POU, interface or property that an entry belongs to; folders are looked through.
+// The POU, interface or, of accessors, property that an entry belongs to; folders are looked
+// through.
 uint32_t Reader::owner_of(uint32_t entry) const {
+  const bool accessor = entries_[entry].row->kind == Kind::kAccessor;
   for (uint32_t steps = 0; steps < base::kMaxXmlDepth; ++steps) {
     const auto found = by_guid_.find(entries_[entry].parent);
     if (found == by_guid_.end() || found->second == entry) return kNone;
     entry = found->second;
     const Kind kind = entries_[entry].row->kind;
-    if (kind == Kind::kPou || kind == Kind::kInterface || kind == Kind::kProperty) return entry;
+    const bool owns =
+        accessor ? kind == Kind::kProperty : kind == Kind::kPou || kind == Kind::kInterface;
+    if (owns) return entry;
     if (kind != Kind::kFolder) return kNone;
   }
   return kNone;
@@ -182,6 +195,7 @@ void Reader::find_children() {
     const bool member = kind >= Kind::kMethod && kind <= Kind::kTransition;
     if (!member) continue;
     const uint32_t owner = owner_of(i);
+    entries_[i].orphan = owner == kNone;
     if (owner == kNone) {
       report_.add(Code::kXmlMissing, entries_[i].node,
                   "`" + entries_[i].name + "` belongs to an object that is not in this file",
@@ -199,13 +213,19 @@ Node Reader::element(Node parent, const char* name, const Entry& entry) {
   return out;
 }
 
-void Reader::texts(Node to, const Entry& entry) {
+// `needs_body`: without one it is not whole.
+void Reader::texts(Node to, const Entry& entry, bool needs_body) {
   std::string declaration;
   if (const Node part = member(entry.object, "Interface"); text_of(part, declaration)) {
     to.append_child("Declaration").append_child(pugi::node_cdata).set_value(declaration.c_str());
   }
   const Node part = member(entry.object, "Implementation");
-  if (!part) return;
+  if (!part) {
+    if (!needs_body) return;
+    report_.add(Code::kXmlMissing, entry.node, "`" + entry.name + "` has no body",
+                "export it again");
+    return;
+  }
   Node body = to.append_child("Implementation");
   std::string statements;
   if (text_of(part, statements)) {
@@ -215,16 +235,18 @@ void Reader::texts(Node to, const Entry& entry) {
   }
 }
 
-void Reader::write(uint32_t number, Node parent, uint32_t depth) {
-  const Entry& entry = entries_[number];
+// `has_bodies`: it is no interface, nor in one. At most three levels, since owner_of() is strict.
+void Reader::write(uint32_t number, Node parent, bool has_bodies) {
+  Entry& entry = entries_[number];
+  entry.written = true;
+  const Kind kind = entry.row->kind;
   const char* name = entry.row->element;
-  if (entry.row->kind == Kind::kAccessor) {
-    name = base::same_name(entry.name, "Set") ? "Set" : "Get";
-  }
+  if (kind == Kind::kAccessor) name = base::same_name(entry.name, "Set") ? "Set" : "Get";
   const Node out = element(parent, name, entry);
-  texts(out, entry);
-  if (depth == 0) return;
-  for (uint32_t child : entry.children) write(child, out, depth - 1);
+  const bool executes = kind == Kind::kPou || kind == Kind::kMethod || kind == Kind::kAccessor ||
+                        kind == Kind::kAction || kind == Kind::kTransition;
+  texts(out, entry, executes && has_bodies);
+  for (uint32_t child : entry.children) write(child, out, has_bodies);
 }
 
 void Reader::left_out(const Entry& entry) {
@@ -250,10 +272,15 @@ void Reader::run(Node root) {
     const bool top = kind == Kind::kPou || kind == Kind::kInterface || kind == Kind::kType ||
                      kind == Kind::kGlobals;
     if (top) {
-      write(i, all, 2);  // properties have accessors
+      write(i, all, kind != Kind::kInterface);
     } else if (kind >= Kind::kFolder) {
       left_out(entries_[i]);
     }
+  }
+  for (const Entry& entry : entries_) {
+    if (entry.written || entry.row->kind >= Kind::kFolder || entry.orphan) continue;
+    report_.add(Code::kXmlMissing, entry.node,
+                "`" + entry.name + "` belongs to an object that does not come in");
   }
 }
 

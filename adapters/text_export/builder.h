@@ -27,8 +27,9 @@ inline Modifier negation(bool negated) { return negated ? Modifier::kNegated : M
 
 class Builder {
  public:
-  Builder(const PinNames& pins, const Report& report, const std::string& what)
-      : pins_(pins), report_(report), what_(what) {}
+  // `links`: pairs that the wires of this export have connected so far.
+  Builder(const PinNames& pins, const Report& report, const std::string& what, size_t& links)
+      : pins_(pins), report_(report), what_(what), links_(links) {}
 
   network::Network run(const DrawnNetwork& drawn, bool ladder, uint32_t number);
   bool failed() const { return failed_; }
@@ -43,7 +44,8 @@ class Builder {
   Wire value(const Tree& tree);
   Wire source(const Tree& tree);
   Wire assign(const Tree& tree);
-  Wire box(const Tree& tree, const std::vector<Link>& power);
+  // `power`: what arrives at EN. `leads_on`: its value goes somewhere.
+  Wire box(const Tree& tree, const std::vector<Link>& power, bool leads_on);
   void inputs(const Tree& tree, const Pins* pins, Element& block);
   void outputs(const Tree& tree, const Pins* pins, uint32_t block);
   void end(const End& target, Wire wire, bool power);
@@ -60,7 +62,7 @@ class Builder {
   uint32_t number_ = 0;
   bool has_rail_ = false;
   bool failed_ = false;
-  size_t links_ = 0;
+  size_t& links_;
   network::Network out_;
 };
 

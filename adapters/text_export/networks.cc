@@ -62,7 +62,7 @@ Wire Builder::value(const Tree& tree) {
     case Shape::kOperand:
       return source(tree);
     case Shape::kBox:
-      return box(tree, {});
+      return box(tree, {}, true);
     case Shape::kAssign:
       return assign(tree);
     default:
@@ -125,7 +125,21 @@ void Builder::inputs(const Tree& tree, const Pins* pins, Element& block) {
   for (size_t i = 0; i < tree.parts.size() && !failed_; ++i) {
     network::Input input;
     if (pins != nullptr) input.name = pins->left[i];
-    Wire wire = value(tree.parts[i]);
+    const Tree& part = tree.parts[i];
+    if (tree.enabled && (part.shape == Shape::kBox || part.shape == Shape::kAssign)) {
+      fail(part.at, "a box stands inside of a box with EN, which is not known here",
+           "give its value a variable in a network of its own");
+      return;
+    }
+    // At the rail it would have power, and open it keeps its value: nobody says which.
+    if (has_rail_ && part.shape == Shape::kEmpty) {
+      fail(part.at,
+           "a pin of the box `" + std::string(tree.owner.empty() ? tree.text : tree.owner) +
+               "` is _EMPTY in a ladder, which is not known here",
+           "connect it where the export was made");
+      return;
+    }
+    Wire wire = value(part);
     if (wire.from.empty()) {
       // What is not wired keeps its value; by position that would move those behind it.
       if (pins == nullptr) {
@@ -156,8 +170,7 @@ void Builder::outputs(const Tree& tree, const Pins* pins, uint32_t block) {
   }
 }
 
-// `power`: what arrives at EN.
-Wire Builder::box(const Tree& tree, const std::vector<Link>& power) {
+Wire Builder::box(const Tree& tree, const std::vector<Link>& power, bool leads_on) {
   Element block;
   block.kind = network::Kind::kBlock;
   block.type.text = std::string(tree.text);
@@ -175,11 +188,12 @@ Wire Builder::box(const Tree& tree, const std::vector<Link>& power) {
                "` have no names in an export, and the block " +
                "is declared in no file that is imported with it",
            "import the export of its library together with this one");
-    } else if (pins->unclear) {
-      fail(tree.at,
-           "`" + std::string(tree.text) + "` declares VAR_IN_OUT in front of VAR_INPUT: in which " +
-               "order its pins stand is not known",
-           "declare VAR_INPUT first where the export was made, and export it again");
+    } else if (!pins->unclear.empty()) {
+      fail(tree.at, "in which order the pins of `" + std::string(tree.text) +
+                        "` stand is not known: " + pins->unclear);
+    } else if (leads_on && pins->right.empty()) {
+      fail(tree.at, "the value of `" + std::string(tree.owner) + "` is used, and " +
+                        std::string(tree.text) + " has no output");
     }
   }
   if (failed_) return {};
@@ -221,20 +235,32 @@ network::Network Builder::run(const DrawnNetwork& drawn, bool ladder, uint32_t n
   if (drawn.ladder) {
     rung(drawn);
   } else {
-    for (const Tree& tree : drawn.trees) value(tree);
+    for (const Tree& tree : drawn.trees) {
+      if (tree.shape == Shape::kBox) {
+        box(tree, {}, false);
+      } else {
+        value(tree);
+      }
+    }
   }
   if (failed_ || out_.elements.size() == (ladder ? 1u : 0u)) out_.elements.clear();
   return std::move(out_);
 }
 
-bool is_drawn(std::string_view body) {
-  const std::string_view text = xml::trimmed(body);
-  const std::string_view line = xml::trimmed(text.substr(0, text.find('\n')));
+bool is_body_word(std::string_view line) {
+  line = xml::trimmed(line);
+  line = line.substr(0, line.find_first_of(" \t("));
   return line.starts_with("_") && line.ends_with("_BODY") && xml::is_name(line);
 }
 
+bool is_drawn(std::string_view body) {
+  const std::string_view text = xml::trimmed(body);
+  return is_body_word(text.substr(0, text.find('\n')));
+}
+
 std::optional<network::Body> read_networks(std::string_view text, const std::string& what,
-                                           const PinNames& pins, const Report& report) {
+                                           const PinNames& pins, const Report& report,
+                                           size_t& links) {
   const Drawn drawn = read_trees(text);
   if (!drawn.problem.empty()) {
     report(Code::kXmlBody, drawn.problem_at, drawn.problem_network,
@@ -246,7 +272,7 @@ std::optional<network::Body> read_networks(std::string_view text, const std::str
   bool failed = false;
   std::vector<std::string> comments;
   for (uint32_t i = 0; i < drawn.networks.size(); ++i) {
-    Builder builder(pins, report, what);
+    Builder builder(pins, report, what, links);
     network::Network made = builder.run(drawn.networks[i], drawn.ladder, i + 1);
     failed = failed || builder.failed();
     comments.insert(comments.end(), made.comments.begin(), made.comments.end());

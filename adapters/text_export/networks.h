@@ -29,11 +29,14 @@ namespace text_export {
 using Report = std::function<void(base::DiagnosticCode code, uint32_t at, uint32_t network,
                                   std::string text, std::string fix)>;
 
-bool is_drawn(std::string_view body);
+bool is_body_word(std::string_view line);  // _LD_BODY, _SFC_BODY ...
+bool is_drawn(std::string_view body);      // does it begin with such a line?
 
-// `text` begins at a body that is_drawn(). nullopt, after a report (E1083): something of it has no
-// meaning here. `what`: how messages call the body.
+// `text` begins at a body that is_drawn(). `links` counts the pairs of connected elements of the
+// whole export, of which there may be base::kMaxLinks. nullopt, after a report (E1083): something
+// of it has no meaning here. `what`: how messages call the body.
 std::optional<frontend::network::Body> read_networks(std::string_view text, const std::string& what,
-                                                     const PinNames& pins, const Report& report);
+                                                     const PinNames& pins, const Report& report,
+                                                     size_t& links);
 
 }  // namespace text_export

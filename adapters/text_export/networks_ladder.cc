@@ -73,6 +73,11 @@ std::vector<Link> Builder::power(const Tree& tree, std::vector<Link> from) {
 void Builder::rung(const DrawnNetwork& drawn) {
   const Tree& rung = drawn.trees[0];
   if (rung.negated) fail(rung.at, "the power of a rung is negated, which is not known here");
+  const bool ends = !rung.ends.empty() || !drawn.enabled.empty();
+  if (!ends && rung.parts[0].shape == Shape::kBox) {
+    box(rung.parts[0], {}, false);
+    return;
+  }
   const std::vector<Link> from = power(rung.parts[0], rail());
   for (const Tree& tree : drawn.enabled) {
     const Tree& what = tree.shape == Shape::kAssign ? tree.parts[0] : tree;
@@ -80,7 +85,7 @@ void Builder::rung(const DrawnNetwork& drawn) {
       fail(tree.at, "what stands beside the coils is no box with EN");
     }
     if (failed_) return;
-    const Wire wire = box(what, from);
+    const Wire wire = box(what, from, tree.shape == Shape::kAssign && !tree.ends.empty());
     if (tree.shape != Shape::kAssign) continue;
     for (const End& target : tree.ends) {
       if (!failed_ && !target.name.empty()) end(target, wire, false);

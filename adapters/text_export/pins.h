@@ -12,20 +12,24 @@ struct Pins {
   // As the box shows them: inputs, then in-outs.
   std::vector<std::string> left;
   std::vector<std::string> right;
-  // In-outs are declared in front of inputs: which of them the box shows first is not known.
-  bool unclear = false;
+  // Why it is not known which of them the box shows first; empty: it is.
+  std::string unclear;
 };
 
 class PinNames {
  public:
-  // The function blocks that a text in ST declares. The first declaration of a name counts.
+  // The function blocks that a text in ST declares, but for those in namespaces. Two that have one
+  // name and other pins are unclear.
   void add(std::string_view source);
-  // Those of the library that come with every program, as CODESYS calls them.
+  // Those of the library that come with every program, as CODESYS calls them; what is declared
+  // already goes before them.
   void add_library();
 
   const Pins* find(std::string_view type) const;  // null: not declared
 
  private:
+  void add(std::string_view source, std::map<std::string, Pins>& to) const;
+
   std::map<std::string, Pins> types_;  // by folded name
 };
 

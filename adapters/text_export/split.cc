@@ -1,7 +1,8 @@
 // The text of an export -> its objects.
 #include <algorithm>
-#include <optional>
 
+#include "adapters/text_export/networks.h"
+#include "adapters/text_export/scanner.h"
 #include "adapters/text_export/text_export.h"
 #include "adapters/xml/document.h"
 #include "base/name_case.h"
@@ -15,137 +16,52 @@ using Code = base::DiagnosticCode;
 
 constexpr std::string_view kMarker = "@END_DECLARATION";
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
-bool is_section(std::string_view word) {
-  constexpr const char* kSections[] = {"VAR",        "VAR_INPUT", "VAR_OUTPUT",
-                                       "VAR_IN_OUT", "VAR_TEMP",  "VAR_EXTERNAL"};
-  return std::any_of(std::begin(kSections), std::end(kSections),
-                     [word](const char* section) { return same_name(word, section); });
+bool is_one_of(std::string_view word, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [word](const char* one) { return same_name(word, one); });
 }
 
-class Splitter {
+bool is_section(std::string_view word) {
+  return is_one_of(word,
+                   {"VAR", "VAR_INPUT", "VAR_OUTPUT", "VAR_IN_OUT", "VAR_TEMP", "VAR_EXTERNAL"});
+}
+
+bool begins_object(std::string_view word) {
+  return is_one_of(word, {"PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "ACTION", "TYPE", "VAR_GLOBAL",
+                          "VAR_CONFIG"});
+}
+
+// Parts of the editor and of devices.
+bool is_foreign(std::string_view word) {
+  return word.starts_with("_") || is_one_of(word, {"LIBRARY", "PLC_CONFIGURATION", "VISUALISATION",
+                                                   "TASKCONFIGURATION", "WATCHLIST"});
+}
+
+class Splitter : private Scanner {
  public:
-  explicit Splitter(Export& out) : out_(out), text_(out.text) {}
+  explicit Splitter(Export& out) : Scanner(out.text), out_(out) {}
   void run();
 
  private:
-  bool at_end() const { return at_ >= text_.size(); }
-  std::string_view rest() const { return text_.substr(at_); }
-  uint32_t line_end() const {
-    return static_cast<uint32_t>(std::min(text_.find('\n', at_), text_.size()));
-  }
-  void skip_line() { at_ = std::min<uint32_t>(line_end() + 1, size()); }
-  uint32_t size() const { return static_cast<uint32_t>(text_.size()); }
-
-  void skip_blanks();
-  void skip_comment();
-  void skip_blanks_and_comments();
-  std::string_view word();       // that stands here; takes it
-  std::string_view next_word();  // behind what is no word; takes it. Empty: the end
-  bool seek_word(std::string_view wanted);
-  bool seek_line(std::string_view wanted);
   std::string value_of(std::string_view attribute, std::string_view comment) const;
 
   void attribute();
+  void foreign(std::string_view first);
   void pou(std::string_view word);
   void declaration(Object& object);
   void body(Part& body, std::string_view end, const std::string& what);
   void action();
   void type();
   void globals();
-  void unknown(std::string_view first);
+  void unknown();
   void library(uint32_t begin);
   void remark(Code code, uint32_t begin, std::string text, std::string fix = {}) {
-    out_.remarks.push_back({code, {begin, begin}, std::move(text), std::move(fix)});
+    out_.remarks.push_back({code, false, {begin, begin}, std::move(text), std::move(fix)});
   }
 
   Export& out_;
-  std::string_view text_;
-  uint32_t at_ = 0;
   std::string list_;  // of global variables: the name that the next one has
 };
-
-void Splitter::skip_blanks() {
-  while (!at_end() && is_blank(text_[at_])) ++at_;
-}
-
-// `(* ... (* ... *) ... *)`: comments nest. One that does not end is all that follows.
-void Splitter::skip_comment() {
-  uint32_t depth = 0;
-  do {
-    if (rest().starts_with("(*")) {
-      ++depth;
-      at_ += 2;
-    } else if (rest().starts_with("*)")) {
-      --depth;
-      at_ += 2;
-    } else {
-      ++at_;
-    }
-  } while (depth > 0 && !at_end());
-  at_ = std::min(at_, size());
-}
-
-void Splitter::skip_blanks_and_comments() {
-  for (skip_blanks(); rest().starts_with("(*"); skip_blanks()) skip_comment();
-}
-
-std::string_view Splitter::word() {
-  const uint32_t begin = at_;
-  while (!at_end() && xml::is_name(text_.substr(begin, at_ + 1 - begin))) ++at_;
-  return text_.substr(begin, at_ - begin);
-}
-
-std::string_view Splitter::next_word() {
-  while (!at_end()) {
-    if (rest().starts_with("(*")) {
-      skip_comment();
-      continue;
-    }
-    const char c = text_[at_];
-    if (c == '\'' || c == '"') {  // a text ends in its row, at the latest
-      const uint32_t end = line_end();
-      for (++at_; at_ < end && text_[at_] != c; ++at_) at_ += text_[at_] == '$' ? 1 : 0;
-      at_ = std::min(at_ + 1, size());
-      continue;
-    }
-    // `16#FF`, `T#5s`, `8x`: no words, and not the names inside of them.
-    if (const std::string_view found = word(); !found.empty()) return found;
-    const bool digit = c >= '0' && c <= '9';
-    ++at_;
-    while (digit && !at_end() && xml::is_name("_" + std::string(1, text_[at_]))) ++at_;
-  }
-  return {};
-}
-
-// Up to in front of `wanted`.
-bool Splitter::seek_word(std::string_view wanted) {
-  for (;;) {
-    const std::string_view found = next_word();
-    if (found.empty()) return false;
-    if (!same_name(found, wanted)) continue;
-    at_ -= static_cast<uint32_t>(found.size());
-    return true;
-  }
-}
-
-// The same where texts are no Structured Text: `wanted` begins a line, and no comment of a network
-// is around it.
-bool Splitter::seek_line(std::string_view wanted) {
-  bool inside = false;
-  for (; !at_end(); skip_line()) {
-    const std::string_view line = xml::trimmed(text_.substr(at_, line_end() - at_));
-    if (line == "_COMMENT" || line == "_END_COMMENT") inside = line == "_COMMENT";
-    const bool whole =
-        line.size() <= wanted.size() || !xml::is_name("_" + std::string(1, line[wanted.size()]));
-    if (!inside && whole && same_name(line.substr(0, wanted.size()), wanted)) {
-      skip_blanks();
-      return true;
-    }
-  }
-  return false;
-}
 
 // `(* @PATH := '\/Pumps' *)`
 std::string Splitter::value_of(std::string_view attribute, std::string_view comment) const {
@@ -162,6 +78,8 @@ void Splitter::attribute() {
   const std::string_view comment = text_.substr(begin, at_ - begin);
   const std::string list = value_of("@GLOBAL_VARIABLE_LIST", comment);
   if (!list.empty()) list_ = list;
+  const std::string nested = value_of("@NESTEDCOMMENTS", comment);
+  if (!nested.empty()) nested_ = !same_name(nested, "No");
 }
 
 void Splitter::declaration(Object& object) {
@@ -200,15 +118,16 @@ void Splitter::declaration(Object& object) {
 
 // Behind the declaration.
 void Splitter::body(Part& body, std::string_view end, const std::string& what) {
+  const uint32_t begin = at_;
+  skip_blanks_and_comments();
+  const bool drawn = is_body_word(rest().substr(0, line_end() - at_));
+  if (!drawn) at_ = begin;
   body.begin = at_;
-  skip_blanks();
-  const bool drawn = rest().starts_with("_") &&
-                     rest().substr(0, line_end() - at_).find("_BODY") != std::string_view::npos;
-  if (!drawn) at_ = body.begin;
   const bool found = drawn ? seek_line(end) : seek_word(end);
   body.end = at_;
   if (found) {
     word();
+    if (!at_end() && text_[at_] == ';') ++at_;
   } else {
     remark(Code::kXmlMissing, body.begin, what + " has no " + std::string(end),
            "the export was cut off: export it again");
@@ -218,6 +137,7 @@ void Splitter::body(Part& body, std::string_view end, const std::string& what) {
 void Splitter::pou(std::string_view kind) {
   Object object;
   object.kind = Kind::kPou;
+  object.nested = nested_;
   object.word = base::same_name(kind, "PROGRAM")    ? "PROGRAM"
                 : base::same_name(kind, "FUNCTION") ? "FUNCTION"
                                                     : "FUNCTION_BLOCK";
@@ -248,6 +168,7 @@ void Splitter::action() {
 void Splitter::type() {
   Object object;
   object.kind = Kind::kType;
+  object.nested = nested_;
   object.declaration.begin = at_;
   word();
   skip_blanks_and_comments();
@@ -266,6 +187,7 @@ void Splitter::type() {
 void Splitter::globals() {
   Object object;
   object.kind = Kind::kGlobals;
+  object.nested = nested_;
   object.name = list_.empty() ? "Global_Variables" : list_;
   object.declaration.begin = at_;
   for (;;) {
@@ -294,12 +216,13 @@ void Splitter::globals() {
 
 // Configurations of devices, visualisations, libraries: up to their end, or up to the attributes
 // of the next object.
-void Splitter::unknown(std::string_view first) {
+void Splitter::foreign(std::string_view first) {
   const uint32_t begin = at_;
   const std::string own = "END_" + std::string(first);
   for (skip_line(); !at_end(); skip_line()) {
     const std::string_view line = xml::trimmed(text_.substr(at_, line_end() - at_));
-    const bool ends = same_name(line, own) || (first == "PLC_CONFIGURATION" && line == "PLC_END");
+    const bool ends =
+        same_name(line, own) || (same_name(first, "PLC_CONFIGURATION") && line == "PLC_END");
     if (ends) {
       skip_line();
       break;
@@ -309,9 +232,30 @@ void Splitter::unknown(std::string_view first) {
       break;
     }
   }
-  if (same_name(first, "LIBRARY")) return library(begin);
-  remark(Code::kXmlNotUnderstood, begin,
-         "`" + std::string(first) + "` begins a part that is not read");
+  if (same_name(first, "LIBRARY")) {
+    library(begin);
+  } else {
+    remark(Code::kXmlNotUnderstood, begin,
+           "`" + std::string(first) + "` begins a part that is not read");
+  }
+  out_.remarks.back().foreign = true;
+}
+
+// Anything else up to the next object: an error, since it may have been one.
+void Splitter::unknown() {
+  const uint32_t begin = at_;
+  const std::string_view line = xml::trimmed(text_.substr(at_, line_end() - at_));
+  remark(Code::kXmlBadValue, begin,
+         "`" + std::string(line.substr(0, 40)) + "` begins nothing that an export holds",
+         "write it into a source of its own");
+  for (skip_line(); !at_end(); skip_line()) {
+    skip_blanks();
+    if (rest().starts_with("(* @")) return;
+    const uint32_t row = at_;
+    const std::string_view first = word();
+    at_ = row;
+    if (begins_object(first)) return;
+  }
 }
 
 // `Standard.lib 5.6.98 12:03:02`, behind LIBRARY, and the names of what is in it.
@@ -344,13 +288,15 @@ void Splitter::run() {
       action();
     } else if (same_name(first, "TYPE")) {
       type();
-    } else if (same_name(first, "VAR_GLOBAL") || same_name(first, "VAR_CONFIG")) {
+    } else if (begins_object(first)) {
       globals();
+    } else if (is_foreign(first)) {
+      foreign(first);
     } else {
-      const std::string_view line = xml::trimmed(text_.substr(at_, line_end() - at_));
-      unknown(first.empty() ? line.substr(0, 40) : first);
+      unknown();
     }
   }
+  if (open_comment_) remark(Code::kXmlMissing, *open_comment_, "a comment does not end");
 }
 
 }  // namespace

@@ -30,8 +30,9 @@ enum class Kind : uint8_t { kPou, kType, kGlobals };
 
 struct Object {
   Kind kind = Kind::kPou;
-  std::string word;  // of POUs: PROGRAM, FUNCTION_BLOCK or FUNCTION
-  std::string name;  // may be none of Structured Text
+  std::string word;    // of POUs: PROGRAM, FUNCTION_BLOCK or FUNCTION
+  std::string name;    // may be none of Structured Text
+  bool nested = true;  // comments in its text nest
   Part declaration;
   Part body;
   std::vector<Action> actions;
@@ -40,6 +41,7 @@ struct Object {
 // What the objects of an export are not.
 struct Remark {
   base::DiagnosticCode code;
+  bool foreign = false;  // a part that no source has: a list of libraries, a configuration
   Part place;
   std::string text;
   std::string fix;
@@ -58,7 +60,8 @@ struct Export {
 // `text` is UTF-8 and stands at `begin` of a SourceMap.
 Export split(std::string_view text, base::SourcePos begin);
 
-// Is there anything but Structured Text and instruction lists? Else it is a source as it stands.
+// Is there what no source holds: drawings, parts of the editor, comments that do not nest? Else it
+// is a source as it stands, whatever else is in it.
 bool is_more_than_text(const Export& of);
 
 // What its function blocks call their pins.

@@ -5,6 +5,7 @@
 
 #include "adapters/xml/document.h"
 #include "base/limits.h"
+#include "frontend/lex/characters.h"
 
 namespace text_export {
 namespace {
@@ -200,10 +201,11 @@ Tree Lines::tree() {
 void Lines::comment(DrawnNetwork& network) {
   if (!accept("_COMMENT")) return;
   std::string text;
-  for (; !at_end() && line() != "_END_COMMENT"; skip()) {
+  for (; !at_end() && !(line() == "_END_COMMENT" && text.ends_with('\'')); skip()) {
     text += text.empty() ? "" : "\n";
     text += line();
   }
+  if (text.size() < 2 || text.front() != '\'') fail("a comment is no text in '");
   expect("_END_COMMENT");
   std::string_view inside = text;
   if (inside.starts_with("'")) inside.remove_prefix(1);
@@ -245,7 +247,8 @@ bool Lines::network() {
 }
 
 bool Lines::run() {
-  const std::string_view head = peek();
+  std::string_view head = peek();  // a comment may stand behind it
+  head = head.substr(0, head.find_first_of(" \t("));
   out_.ladder = head == "_LD_BODY";
   if (!out_.ladder && head != "_FBD_BODY") {
     return fail("`" + std::string(head.substr(0, 60)) +
@@ -267,6 +270,16 @@ bool Lines::run() {
 }
 
 }  // namespace
+
+std::string_view word_of_form(std::string_view declaration) {
+  for (size_t at = 0; at < declaration.size();) {
+    size_t end = at;
+    while (end < declaration.size() && frontend::is_name_part(declaration[end])) ++end;
+    if (is_word(declaration.substr(at, end - at))) return declaration.substr(at, end - at);
+    at = std::max(end, at + 1);
+  }
+  return {};
+}
 
 Drawn read_trees(std::string_view body) {
   Drawn out;

@@ -51,4 +51,8 @@ struct Drawn {
 
 Drawn read_trees(std::string_view body);
 
+// A name in a declaration that is a word of the form: a variable called so cannot be told from
+// that. Empty: none.
+std::string_view word_of_form(std::string_view declaration);
+
 }  // namespace text_export

@@ -19,7 +19,7 @@ entry() {
   printf '          <Single Name="Object" Type="{%s}" Method="IArchivable">\n' "$3"
   if [ "${6:-}" = - ]; then
     printf '            <Single Name="Implementation" Type="{1d3bfd54-4a0d-4bd6-9d2f-4a2b39d9b5d2}" Method="IArchivable"><Single Name="Items" /></Single>\n'
-  elif [ -n "${6:-}" ]; then
+  elif [ $# -ge 6 ]; then
     text Implementation "$6"
   fi
   if [ -n "${5:-}" ]; then text Interface "$5"; fi
@@ -137,6 +137,28 @@ grep -q '{error' drawn/PLC_PRG.st || fail "it is taken for empty"
 entry $start $pump $method Start 'METHOD Start : BOOL' 'Start := TRUE;' | document >member.export
 expect 1 stc import member.export -o member
 said 'E1073.: `Start` belongs to an object that is not in this file; export the whole POU'
+# What is there in part only is an error, and nothing of it is taken for empty or left out.
+broken() {  # broken REGEX: an error of broken.export
+  document >broken.export
+  expect 1 stc import broken.export -o broken --force
+  said "error.*$1"
+}
+header='PROGRAM P
+VAR
+END_VAR
+'
+entry $main $app $pou P "$header" | broken '`P` has no body'
+entry $main $app $pou P "$header" 'x := 1;' |
+  sed 's|<Single Name="TextBlobForSerialisation" Type="string">x := 1;|<Null Name="TextBlobForSerialisation" /><Single Name="Other">|' |
+  broken 'E1080.*the body of P is drawn'
+rows=yes entry $main $app $pou P "$header" 'x := 1;' | sed 's|<Single Name="Text" Type="string">x := 1;</Single>||' |
+  broken 'E1080.*the body of P is drawn'
+rows=yes entry $main $app $pou P "$header" 'x := 1;' | sed 's|x := 1;|<Part>x := 1;</Part>|' |
+  broken 'E1080.*the body of P is drawn'
+{ entry $main $app $pou P "$header" ';'; entry $limit $main $property L 'PROPERTY L : INT'; entry $start $limit $method S 'METHOD S' ';'; } |
+  broken '`S` belongs to an object that is not in this file'
+{ entry $main $app $pou P "$header" ';'; entry $main $app $pou Q 'PROGRAM Q' ';'; } | broken 'E1075.*two objects have the number of `Q`'
+{ entry $limit $get $property L 'PROPERTY L : INT'; entry $get $limit $accessor Get '' ';'; } | broken 'belongs to an object'
 # Objects that are each other's parent end.
 { entry $work $inner $folder A; entry $inner $work $folder B; entry $start $inner $method Start 'METHOD Start' ''; } |
   document >loop.export

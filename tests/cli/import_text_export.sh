@@ -145,7 +145,7 @@ refused 14 'the box `t` has 1 inputs, and TON declares 2'
   box f FB | rung | body _LD_BODY 1
   printf 'FUNCTION_BLOCK FB\nVAR_IN_OUT\n\tx: BOOL;\nEND_VAR\nVAR_INPUT\n\ty: BOOL;\nEND_VAR\n%s\nEND_FUNCTION_BLOCK\n' "$marker"
 } >bad.exp
-refused 14 '`FB` declares VAR_IN_OUT in front of VAR_INPUT'
+refused 14 'in which order the pins of `FB` stand is not known: it declares VAR_IN_OUT in front of VAR_INPUT'
 contact a | body _FBD_BODY 1 >bad.exp
 refused 8 '`_LD_CONTACT` stands where `_NETWORK` is expected'
 { network "''" 'no name'; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } |
@@ -156,10 +156,98 @@ refused 8 'the label `no name` is no name'
 refused 269 'its elements are nested deeper than 256 levels'
 { network; printf '_ASSIGN\n_OPERATOR\n_BOX_EXPR : 4000000000\n'; } | body _FBD_BODY 1 >bad.exp
 refused 15 '`_BOX_EXPR : 4000000000` has no number'
+# A block without outputs has no value; called for itself it needs none.
+{
+  box f FB | rung | body _LD_BODY 1
+  printf 'FUNCTION_BLOCK FB\nVAR_INPUT\n\ty: BOOL;\nEND_VAR\n%s\nEND_FUNCTION_BLOCK\n' "$marker"
+} >bad.exp
+refused 14 'the value of `f` is used, and FB has no output'
+{
+  { network; box f FB; } | body _FBD_BODY 1 | sed 's/_LD_CONTACT/_OPERAND/; /^_OPERAND$/{n;d}' | sed '/^_OPERAND$/{n;n;s/$/\na/}'
+  printf 'FUNCTION_BLOCK FB\nVAR_INPUT\n\ty: BOOL;\nEND_VAR\n%s\nEND_FUNCTION_BLOCK\n' "$marker"
+} >good.exp
+expect 0 stc import good.exp -o good --force
+grep -q 'f : FB(y := a);' good/P.st || fail "$(cat good.exp good/P.st)"
+# A box inside of a box with EN would run without; a pin at the rail may have power or none.
+enabled() { network; printf '_LD_ASSIGN\n'; contact a; value; printf 'ENABLELIST : 1\n_ASSIGN\n_OPERATOR\n_BOX_EXPR : 2\n_ENABLED\n'; operand 1; cat; value; printf 'ADD\n'; value; printf '_OUTPUTS : 1\n'; output b; printf 'ENABLELIST_END\n_OUTPUTS : 0\n'; }
+{ printf '_OPERATOR\n_BOX_EXPR : 1\n'; operand 2; value; printf 'ABS\n'; } | enabled | body _LD_BODY 1 >bad.exp
+refused 29 'a box stands inside of a box with EN, which is not known here'
+{ printf '_FUNCTIONBLOCK\nt\n_BOX_EXPR : 2\n_EMPTY\n'; operand T#1s; value; printf 'TON\n_OUTPUTS : 1\n'; output _EMPTY; } |
+  rung | body _LD_BODY 1 >bad.exp
+refused 17 'a pin of the box `t` is _EMPTY in a ladder'
+# Names and comments that look like the form.
+contact a | rung | body _LD_BODY 1 | sed 's/a, b: BOOL;/a, _EMPTY: BOOL;/' >bad.exp
+refused 6 'a variable is called `_EMPTY`, which is a word of the form'
+{ network "'one
+_END_COMMENT
+END_PROGRAM
+two'"; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } | body _LD_BODY 1 >good.exp
+expect 0 stc import good.exp -o good --force
+grep -q 'END_PROGRAM$' good/P.st && grep -q '( b )' good/P.st || fail "a comment cuts the body: $(cat good/P.st)"
+{ network; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } |
+  body _LD_BODY 1 | sed 's/^_LD_BODY$/(* drawn *)\n_LD_BODY (* too *)/' >good.exp
+expect 0 stc import good.exp -o good --force
+grep -q '( b )' good/P.st || fail "a comment hides the drawing: $(cat good/P.st)"
+# Two blocks of one name, and those of other kinds of declaration.
+pins() { printf 'FUNCTION_BLOCK FB\nVAR_INPUT\n\t%s: BOOL;\nEND_VAR\nVAR_OUTPUT\n\tq: BOOL;\nEND_VAR\n%s\nEND_FUNCTION_BLOCK\n' "$1" "$marker"; }
+{ box f FB | rung | body _LD_BODY 1; pins x; pins y; } >bad.exp
+refused 14 '.*it is declared twice, with other pins'
+{ box f FB | rung | body _LD_BODY 1; pins x | sed '1s/$/ EXTENDS Base/'; } >bad.exp
+refused 14 '.*it extends another block'
+mkdir beside
+box f FB | rung | body _LD_BODY 1 >beside/main.exp
+{ printf 'NAMESPACE N\n'; pins other; printf 'END_NAMESPACE\n'; pins own | sed 's/^END_FUNCTION_BLOCK/METHOD M VAR_INPUT z: INT; END_VAR END_METHOD\nEND_FUNCTION_BLOCK/'; } >beside/blocks.st
+expect 0 stc import beside -o good --force
+grep -q 'FB  own:=_' good/P.st || fail "the pins of a source beside it: $(cat good/P.st)"
+expect 0 stc check beside --dialect codesys
+expect 0 stc import beside/main.exp beside/blocks.st -o good --force
+# Laying out leaves what is drawn alone.
+expect 0 stc fmt beside
+expect 0 stc fmt --check beside
+expect 2 stc fmt beside/main.exp
+
+# --- what is text alone is a source, whatever it holds
+text_only() {  # from standard input: built as it stands, and the same as an .st
+  cat >only.exp
+  cp only.exp only.st
+  expect 0 stvm run only.exp --dialect codesys --virtual-time --scans 3 --name p --state
+  cp out as_export
+  expect 0 stvm run only.st --dialect codesys --virtual-time --scans 3 --name p --state
+  cmp -s as_export out || fail "as an export it is another program: $(cat as_export)"
+}
+printf 'PROGRAM P\nVAR\n\tn: INT;\nEND_VAR\n%s\nn := n + 1; // it is END_PROGRAM (* yet\nn := n + 10;\nEND_PROGRAM\n' "$marker" | text_only
+grep -q 'P.n=33' out || fail "a row is lost: $(cat out)"
+printf 'PROGRAM P\nVAR\n\tn: INT;\nEND_VAR\nn := n + 1;\nEND_PROGRAM\nCONFIGURATION C\nRESOURCE R ON PLC\nTASK T(INTERVAL := T#100ms, PRIORITY := 1);\nPROGRAM Q WITH T : P;\nEND_RESOURCE\nEND_CONFIGURATION\n' | text_only
+printf '\357\273\277PROGRAM P\nVAR\n\tn: INT;\nEND_VAR\nm := n + 1;\nEND_PROGRAM\n' >wrong.exp
+expect 1 stc check wrong.exp --dialect codesys
+said '^wrong.exp:5:1: error'
+# Comments that do not nest.
+printf "(* @NESTEDCOMMENTS := 'No' *)\nPROGRAM P\nVAR\n\tn: INT;\nEND_VAR\n%s\n(* a (* b *)\nn := n + 1;\nEND_PROGRAM\n(* old (* was *)\nPROGRAM Two\nVAR\n\tn: INT;\nEND_VAR\n%s\nn := n + 2;\nEND_PROGRAM\n" "$marker" "$marker" >flat.exp
+expect 0 stvm run flat.exp --dialect codesys --virtual-time --scans 3 --name p --state
+said 'P.n=3'
+said 'Two.n=6'
+# What begins nothing is an error beside a drawing, and what stands behind it comes in.
+lost() {
+  { { network; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } | body _LD_BODY 1; cat; } >bad.exp
+  expect 1 stc import bad.exp -o bad --force
+  said "E1074.*$1"
+}
+printf "{attribute 'x'}\nPROGRAM Lost\nVAR\nEND_VAR\nEND_PROGRAM\n" | lost 'begins nothing that an export holds'
+[ -e bad/Lost.st ] || fail "the POU behind it is lost"
+{ { network; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } | body _LD_BODY 1 | sed 's/^END_PROGRAM$/END_PROGRAM;/'; printf 'ACTION Act:\na := b;\nEND_ACTION\n'; } >good.exp
+expect 0 stc import good.exp -o good --force
+grep -q 'ACTION Act' good/P.st || fail "the action behind it is lost: $(cat good/P.st)"
+contact a | rung | body _LD_BODY 1 | sed '1i (* open' >bad.exp
+expect 1 stc import bad.exp -o bad --force
+said 'E1073.*a comment does not end'
+# A name of a megabyte takes no longer than one byte after the other.
+awk 'BEGIN { printf "PROGRAM P\n"; for (i = 0; i < 1000000; ++i) printf "a"; print " := 1;\n_LD_BODY\nEND_PROGRAM" }' >long.exp
+expect 1 stc check long.exp --dialect codesys
+
 # Cut off: an error outside of what is drawn, and nothing is taken for whole.
 contact a | rung | body _LD_BODY 1 | head -n 20 >bad.exp
 expect 1 stc import bad.exp -o bad --force
 said 'E1073.*PROGRAM P has no END_PROGRAM; the export was cut off'
-printf 'nothing\n' >bad.exp
+printf '\n(* nothing *)\n' >bad.exp
 expect 1 stc import bad.exp -o bad --force
 said 'E1071.*there is no PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL in this export'

@@ -92,7 +92,7 @@ class Maker:
         else:
             hold, more, held = (operand("i1"), [], "i1") if self.plain else self.tree(depth - 1)
             before = before + more
-            pins, call = [lines, hold, ["_EMPTY"]], f"open := {meaning}, hold := {held}"
+            pins, call = [lines, hold, operand("") if self.ladder else ["_EMPTY"]], f"open := {meaning}, hold := {held}"
         lines = ["_FUNCTIONBLOCK", name, f"_BOX_EXPR : {len(pins)}"] + sum(pins, [])
         lines += ["_EXPRESSION", "_POSITIV", kind] + ends(out)
         before = before + [f"{name}({call});"]

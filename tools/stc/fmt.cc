@@ -12,6 +12,7 @@
 #include "tools/stc/commands.h"
 #include "tools/stc/difference.h"
 #include "tools/stc/format_settings.h"
+#include "tools/stc/importer.h"
 #include "tools/stc/session.h"
 
 namespace stc {
@@ -73,6 +74,11 @@ base::Status Formatter::format_path(const std::string& path) {
   base::Result<frontend::FormatOptions> settings = format_settings(path);
   if (!settings.ok()) return settings.error();
   for (const std::string& file : *files) {
+    if (needs_import(file)) {  // an export with drawings
+      if (tools::is_folder(path)) continue;
+      return base::Error{base::Refusal::kUsage,
+                         file + ": it is no text alone; `stc import` makes sources of it"};
+    }
     base::Status status = format_file(file, *settings);
     if (!status.ok()) return status;
   }

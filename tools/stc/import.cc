@@ -44,6 +44,7 @@ class Import {
     base::SourceLocation place;
   };
   std::vector<Row> rows() const;
+  base::Status look_beside(const std::string& path);
   base::Status refuse_to_overwrite() const;
   std::string target(const Importer::Made& made) const {
     return (folder_ / made.source.name).string();
@@ -57,6 +58,7 @@ class Import {
 };
 
 base::Status Import::read(const std::vector<std::string>& paths) {
+  bool found = false;
   for (const std::string& path : paths) {
     base::Result<std::vector<std::string>> files(std::vector<std::string>{path});
     if (tools::is_folder(path)) files = importable_files(path, true);
@@ -65,16 +67,36 @@ base::Status Import::read(const std::vector<std::string>& paths) {
       return base::Error{base::Refusal::kFileNotFound,
                          path + ": nothing in this folder or below it can be imported"};
     }
+    base::Status beside = look_beside(path);
+    if (!beside.ok()) return beside;
     for (const std::string& file : *files) {
+      if (is_source_name(file) && !is_importable(file)) continue;
       if (!is_importable(file)) {
         return base::Error{base::Refusal::kUsage, file + ": imported are " + kImportable};
       }
+      found = true;
       base::Status status = importer_.add(file);
       if (!status.ok()) return status;
     }
   }
+  if (!found) {
+    return base::Error{base::Refusal::kUsage, paths.front() + ": imported are " + kImportable};
+  }
   importer_.finish();
   for (const Row& row : rows()) errors_ += row.severity == base::Severity::kError ? 1 : 0;
+  return base::Ok{};
+}
+
+// Sources say what the pins of their function blocks are called, which exports do not.
+base::Status Import::look_beside(const std::string& path) {
+  base::Result<std::vector<std::string>> files = source_files(path);
+  if (!files.ok()) return files.error();
+  for (const std::string& file : *files) {
+    if (!is_source_name(file) || is_importable(file)) continue;
+    base::Result<std::string> text = tools::read_text(file, base::kMaxSourceBytes);
+    if (!text.ok()) return text.error();
+    sources_.add(file, std::move(*text));
+  }
   return base::Ok{};
 }
 

@@ -66,7 +66,9 @@ bool needs_import(const std::string& path) {
   if (!has_extension(path, {".exp"})) return is_importable(path);
 #ifdef STC_HAS_XML
   const base::Result<std::string> bytes = tools::read_text(path, base::kMaxXmlBytes);
-  return bytes.ok() && text_export::is_more_than_text(text_export::split(*bytes, {0}));
+  if (!bytes.ok()) return false;
+  const std::string text = xml::text_as_utf8(*bytes);
+  return text_export::is_more_than_text(text_export::split(text, {0}));
 #else
   // What is drawn is refused by add().
   const base::Result<std::string> bytes = tools::read_text(path);
@@ -234,6 +236,7 @@ void Importer::finish() {
   for (uint32_t file = 0; file < sources_.file_count(); ++file) {
     if (sources_.is_source(file)) pins.add(sources_.text(file));
   }
+  for (const Made& one : made) pins.add(one.source.text);
   pins.add_library();
   for (const auto& [path, one] : readers_->exports) {
     text_export::import(one, pins, readers_->current);
