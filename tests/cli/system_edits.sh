@@ -118,3 +118,12 @@ expect 0 stc diff g1 g2
 said '^variable +P.one.in  \(%IW8 -> %IW9\)$'
 said '^variable +P.l.d\[2\].lamp  \(%QX1.2 -> %QX5.3; %QX1.2 is no longer written by any code\)$'
 [ "$(grep -c '^variable' out)" = 2 ] || fail "more is told than moves"
+
+# X1: an edit of an address alone, whose types and instances are those of what runs.
+mkdir a1 a2
+printf 'PROGRAM P\nVAR out AT %%QX0.0 : BOOL; n : INT; END_VAR\n  n := n + 1;\n  out := n > 5;\nEND_PROGRAM\n' >a1/p.st
+sed 's/%QX0.0/%QX0.1/' a1/p.st >a2/p.st
+serve addresses a1
+expect 0 stvm change a2 --dir addresses --dry-run
+tr -s ' ' <out | grep -qxF 'variable P.out (%QX0.0 -> %QX0.1; %QX0.0 is no longer written by any code)' ||
+  fail "the address is not said"
