@@ -60,7 +60,8 @@ class Splitter : private Scanner {
   }
 
   Export& out_;
-  std::string list_;  // of global variables: the name that the next one has
+  std::string list_;         // of global variables: the name that the next one has
+  bool no_end_var_ = false;  // from here to the end: looked for once
 };
 
 // `(* @PATH := '\/Pumps' *)`
@@ -108,8 +109,9 @@ void Splitter::declaration(Object& object) {
       object.body.begin = at_;
       return;
     }
-    const std::string_view section = word();
-    if (!is_section(section) || !seek_word("END_VAR")) return;
+    if (!is_section(word()) || no_end_var_) return;
+    no_end_var_ = !seek_word("END_VAR");
+    if (no_end_var_) return;
     word();
     object.declaration.end = at_;
     object.body.begin = at_;
@@ -227,6 +229,10 @@ void Splitter::foreign(std::string_view first) {
       skip_line();
       break;
     }
+    // `FUNCTION_BLOCK Pump`, where a row of the list of a library is `PUMP: 2048`.
+    const std::string_view object = line.substr(0, line.find_first_of(" \t:"));
+    const bool listed = xml::trimmed(line.substr(object.size())).starts_with(":");
+    if (same_name(first, "LIBRARY") && begins_object(object) && !listed) break;
     if (line.starts_with("(* @NESTEDCOMMENTS") || line.starts_with("(* @PATH") ||
         line.starts_with("(* @GLOBAL_VARIABLE_LIST")) {
       break;

@@ -240,6 +240,14 @@ grep -q 'ACTION Act' good/P.st || fail "the action behind it is lost: $(cat good
 contact a | rung | body _LD_BODY 1 | sed '1i (* open' >bad.exp
 expect 1 stc import bad.exp -o bad --force
 said 'E1073.*a comment does not end'
+# A list of a library without its end, and no attributes of what follows.
+{ { network; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } | body _LD_BODY 1
+  printf 'LIBRARY\nPumps.lib 5.6.98 12:03:02\nNumOfPOUs: 1\nFUNCTION: 0\nPROGRAM Behind\nVAR\nEND_VAR\nEND_PROGRAM\n'; } >good.exp
+expect 0 stc import good.exp -o good --force
+[ -e good/Behind.st ] || fail "the POU behind a list of a library is lost"
+# Many POUs whose variables do not end take no longer than one after the other.
+awk 'BEGIN { for (i = 0; i < 50000; ++i) print "PROGRAM P" i "\nVAR\nEND_PROGRAM" }' >open.exp
+expect 1 stc check open.exp --dialect codesys
 # A name of a megabyte takes no longer than one byte after the other.
 awk 'BEGIN { printf "PROGRAM P\n"; for (i = 0; i < 1000000; ++i) printf "a"; print " := 1;\n_LD_BODY\nEND_PROGRAM" }' >long.exp
 expect 1 stc check long.exp --dialect codesys
