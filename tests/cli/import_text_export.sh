@@ -151,6 +151,15 @@ refused 8 '`_LD_CONTACT` stands where `_NETWORK` is expected'
 { network "''" 'no name'; printf '_LD_ASSIGN\n'; contact a; value; no_boxes; printf '_OUTPUTS : 1\n'; output b; } |
   body _LD_BODY 1 >bad.exp
 refused 8 'the label `no name` is no name'
+# What is negated and is no contact, and a rung in another language.
+branch() { printf '_LD_AND\n_LD_OPERATOR : 2\n'; contact a; contact b; value NEGATIV; }
+branch | rung | body _LD_BODY 1 >bad.exp
+refused 14 'a branch is negated, which is not known here'
+{ network; printf '_LD_ASSIGN\n'; contact a; value NEGATIV; no_boxes; printf '_OUTPUTS : 1\n'; output b; } |
+  body _LD_BODY 1 >bad.exp
+refused 8 'the power of a rung is negated, which is not known here'
+contact a | rung | body _FBD_BODY 1 >bad.exp
+refused 8 'a rung stands in a function block diagram'
 # A million levels, a million promised elements.
 { network; printf '_ASSIGN\n'; awk 'BEGIN { for (i = 0; i < 1000000; ++i) print "_ASSIGN" }'; } | body _FBD_BODY 1 >bad.exp
 refused 269 'its elements are nested deeper than 256 levels'
