@@ -92,7 +92,7 @@ class Builder {
 
   void too_large(TypeId id, uint64_t size, uint64_t limit) {
     error_ = base::Error{base::Refusal::kTooLarge,
-                         "`" + types_.text(id) + "` needs " + std::to_string(size) +
+                         "`" + types_.shown(id) + "` needs " + std::to_string(size) +
                              " bytes; the limit is " + std::to_string(limit) + "."};
   }
 
@@ -100,7 +100,7 @@ class Builder {
     if (done_[id.index] || error_) return;
     if (depth > kMaxEmbedding) {
       error_ =
-          base::Error{base::Refusal::kTooMany, "`" + types_.text(id) + "` is embedded more than " +
+          base::Error{base::Refusal::kTooMany, "`" + types_.shown(id) + "` is embedded more than " +
                                                    std::to_string(kMaxEmbedding) + " levels deep."};
       return;
     }

@@ -2,7 +2,7 @@
 #include "frontend/lower/arguments.h"
 #include "frontend/lower/references.h"
 #include "frontend/sema/calls/open_functions.h"
-#include "frontend/sema/objects/pools.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
@@ -57,7 +57,7 @@ void Arguments::evaluate_any(Binding& binding) {
   }
   const std::string_view group = sema_.tree[parameter.decl->spec].name.text;
   if (!OpenFunctions::belongs(types(), group, note.type) ||
-      ask<Pools>().holds_instance(note.type)) {
+      ir::holds_instance(types(), note.type)) {
     error(DiagnosticCode::kBadGenericArgument, binding.arg->span,
           "`" + sema_.report.type_text(note.type) + "` cannot be given to an input of type " +
               std::string(group));

@@ -7,7 +7,7 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/targets.h"
 #include "frontend/sema/constants/constants.h"
-#include "frontend/sema/objects/pools.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 
@@ -117,7 +117,7 @@ bool Assignments::refuse_copy(ir::TypeId type, base::SourceSpan span) {
 
 void Assignments::assign_aggregate(const Target& to, ExprId value) {
   const Expr& expr = tree_[value];
-  const bool held = ask<Pools>().holds_instance(to.type);
+  const bool held = ir::holds_instance(sema_.program.types, to.type);
   const bool list = expr.kind == ExprKind::kArrayInit || expr.kind == ExprKind::kStructInit;
   if (held && (list || sema_.options.dialect == Dialect::kIec)) {
     error(DiagnosticCode::kNotAssignable, expr.span,

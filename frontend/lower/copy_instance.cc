@@ -4,7 +4,7 @@
 
 #include "frontend/lower/assignments.h"
 #include "frontend/lower/start_code.h"
-#include "frontend/sema/objects/pools.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 
@@ -12,7 +12,7 @@ void Assignments::copy_held(const ir::Place& to, const ir::Place& from, ir::Type
   if (types().is_scalar(id)) {
     return build_.store(to, scalar(id), build_.load(from, scalar(id)));
   }
-  if (!ask<Pools>().holds_instance(id)) return build_.copy(to, from);
+  if (!ir::holds_instance(types(), id)) return build_.copy(to, from);
   // A block that contains itself is an error, which has been told.
   if (std::find(copied_.begin(), copied_.end(), id) != copied_.end()) return;
   copied_.push_back(id);

@@ -4,7 +4,7 @@
 #include "frontend/lower/start_code.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/objects/objects.h"
-#include "frontend/sema/objects/pools.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
@@ -60,7 +60,7 @@ void GivenValues::set_member(const ir::Place& at, const ir::Member& member, ir::
                              ir::ConstId values) {
   const bool located = member.address.area != ir::DirectArea::kNone;
   if (!ir::is_listed(member) || member.constant || member.retain || located) return;
-  if (ask<Pools>().holds_instance(at.type)) return set(at, at.type, listed, values);
+  if (ir::holds_instance(types(), at.type)) return set(at, at.type, listed, values);
   if (sema_.start_values.inside(at.type, listed) || sema_.start_values.inside(at.type, values)) {
     return;
   }

@@ -3,6 +3,7 @@
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/objects/pools.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
@@ -175,7 +176,7 @@ void PoolCode::reset(const ir::Place& at, ir::TypeId id, ir::ConstId init) {
     const uint64_t bits = init.valid() ? sema_.program.constants[init].bits : 0;
     return build_.store(at, scalar, build_.constant(scalar, bits));
   }
-  if (!ask<Pools>().holds_instance(id)) return build_.init(at, init);
+  if (!ir::holds_instance(types(), id)) return build_.init(at, init);
   if (!init.valid()) init = type.init;
   if (type.kind == ir::Kind::kArray) return reset_elements(at, id, init);
   const bool instance = types().is_instance(id);

@@ -24,7 +24,7 @@ bool is_interface(const ir::TypeTable& types, ir::TypeId type) {
 
 std::string Reporter::type_text(ir::TypeId type) const {
   const ir::TypeTable& types = program_.types;
-  return types.text(is_interface(types, type) ? types[type].base : type);
+  return types.shown(is_interface(types, type) ? types[type].base : type);
 }
 
 // The place of a name that could have been meant where nothing has the one that is written: perhaps

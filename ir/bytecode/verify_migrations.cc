@@ -2,8 +2,8 @@
 // calls fit the stack that they run on alone.
 #include <algorithm>
 
-#include "base/limits.h"
 #include "ir/bytecode/verify_parts.h"
+#include "ir/types/parts.h"
 
 namespace ir::verification {
 namespace {
@@ -61,7 +61,7 @@ class MigrationVerifier {
     if (slot.local == LocalKind::kReturn) return true;
     const bool value = slot.local == LocalKind::kInput || slot.local == LocalKind::kOutput;
     const bool plain = image_.types.contains(slot.region.type) && slot.region.dim == 0 &&
-                       (slot.aggregate || slot.cls != Class::kA) && is_plain(slot.region.type, 0);
+                       (slot.aggregate || slot.cls != Class::kA) && is_plain(slot.region.type);
     const bool output = slot.local == LocalKind::kOutput;
     return value && plain &&
            std::any_of(row.values.begin(), row.values.end(), [&](const MigratedName& other) {
@@ -70,12 +70,12 @@ class MigrationVerifier {
   }
 
   // Nothing that names a place: it would mean another one, or none, in the other version.
-  bool is_plain(TypeId id, uint32_t depth) const {
-    if (image_.types.is_reference(id) || image_.types.is_instance(id)) return false;
-    if (depth > base::kMaxNesting || image_.types[id].kind == Kind::kInterface) return false;
-    if (image_.types[id].kind == Kind::kArray) return is_plain(image_.types[id].base, depth + 1);
-    return std::all_of(image_.types[id].members.begin(), image_.types[id].members.end(),
-                       [&](const Member& member) { return is_plain(member.type, depth + 1); });
+  bool is_plain(TypeId id) const {
+    const TypeTable& types = *image_.types;
+    return !any_part(types, id, [&](TypeId part) {
+      return types.is_reference(part) || types.is_instance(part) ||
+             types[part].kind == Kind::kInterface;
+    });
   }
 
   const Image& image_;

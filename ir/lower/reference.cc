@@ -2,7 +2,7 @@
 #include "base/check.h"
 #include "ir/lower/opcodes.h"
 #include "ir/lower/select.h"
-#include "ir/program/shape.h"
+#include "ir/types/parts.h"
 
 namespace ir::codegen {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "base/check.h"
 #include "ir/program/eval_machine.h"
-#include "ir/program/shape.h"
 #include "ir/types/handle.h"
+#include "ir/types/parts.h"
 #include "stdlib/native/natives.h"
 
 namespace ir {

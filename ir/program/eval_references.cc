@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/limits.h"
-#include "ir/program/shape.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
+#include "ir/types/parts.h"
 
 namespace ir {
 namespace {

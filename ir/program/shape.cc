@@ -1,6 +1,6 @@
 #include "ir/program/shape.h"
 
-#include <algorithm>
+#include "ir/types/parts.h"
 
 namespace ir {
 
@@ -29,18 +29,6 @@ bool can_copy(const TypeTable& types, TypeId to, TypeId from) {
   const bool strings =
       kind == types[from].kind && (kind == Kind::kString || kind == Kind::kWstring);
   return (strings || same_shape(types, to, from)) && !holds_instance(types, to);
-}
-
-bool holds_instance(const TypeTable& types, TypeId type) {
-  while (types[type].kind == Kind::kArray) {
-    type = types[type].base;
-  }
-  if (!is_structure(types[type].kind)) {
-    return types.is_instance(type);
-  }
-  const std::vector<Member>& members = types[type].members;
-  return std::any_of(members.begin(), members.end(),
-                     [&types](const Member& member) { return holds_instance(types, member.type); });
 }
 
 }  // namespace ir

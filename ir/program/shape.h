@@ -10,7 +10,5 @@ namespace ir {
 bool same_shape(const TypeTable& types, TypeId a, TypeId b);
 // What kCopy may copy: one shape, or two strings of one kind.
 bool can_copy(const TypeTable& types, TypeId to, TypeId from);
-// Is it an instance slot, or does it embed one?
-bool holds_instance(const TypeTable& types, TypeId type);
 
 }  // namespace ir

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/limits.h"
-#include "ir/program/shape.h"
 #include "ir/program/verify_parts.h"
+#include "ir/types/parts.h"
 
 namespace ir {
 namespace {

@@ -1,6 +1,7 @@
 #include "ir/program/verify_memory.h"
 
 #include "ir/program/shape.h"
+#include "ir/types/parts.h"
 
 namespace ir {
 

@@ -4,9 +4,9 @@
 
 #include <unordered_set>
 #include "base/limits.h"
-#include "ir/program/shape.h"
 
 #include "ir/program/verify_parts.h"
+#include "ir/types/parts.h"
 
 namespace ir {
 namespace {

@@ -288,4 +288,12 @@ std::string TypeTable::text(TypeId id) const {
   return text.take();
 }
 
+std::string TypeTable::shown(TypeId id) const {
+  constexpr size_t kMaxShown = 200;
+  std::string all = text(id);
+  if (all.size() <= kMaxShown || (contains(id) && !types_[id.index].name.empty())) return all;
+  all.resize(std::min(all.rfind(' ', kMaxShown), kMaxShown));  // between words
+  return all + " ...";
+}
+
 }  // namespace ir

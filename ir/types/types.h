@@ -243,6 +243,8 @@ class TypeTable {
   // "INT", "ARRAY[1..3,0..9] OF Motor", "STRING[20]", "Recipe": what people read.
   // Two structurally equal anonymous types have the same text.
   std::string text(TypeId id) const;
+  // The same in a message: of a type without a name that says much, the beginning.
+  std::string shown(TypeId id) const;
 
  private:
   TypeId intern(std::string key, Type type);

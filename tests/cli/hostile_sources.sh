@@ -1,7 +1,8 @@
 #!/bin/sh
 # Sources of a few lines or megabytes that describe more than any machine has room for: each is
 # built, or refused with the name of a limit, and memory that runs out is a message. No build may
-# have more than 3 GB of addresses; what is built here fits into far less.
+# have more than 3 GB of addresses and a minute of processor time; what is built here fits into far
+# less.
 . "$(dirname "$0")/lib.sh"
 
 if grep -q '^STC_SANITIZE:STRING=.' "$2/CMakeCache.txt"; then
@@ -13,7 +14,7 @@ fi
 within() {
   kib=$1
   shift
-  expect "$1" sh -c 'ulimit -v "$1"; shift; exec "$@"' sh "$kib" "$bin/stc" "$2" "$3" -o out.img -q
+  expect "$1" sh -c 'ulimit -t 60; ulimit -v "$1"; shift; exec "$@"' sh "$kib" "$bin/stc" "$2" "$3" -o out.img -q
 }
 builds() { within 3000000 0 build "$1"; }
 refuses() {  # refuses FILE REGEX CODE
@@ -48,6 +49,26 @@ awk 'BEGIN { print "TYPE s0 : STRUCT a : BYTE; END_STRUCT;"
   print "END_TYPE" }' >doubling.st
 main 'x : s29; y : s29;' 'x := y; x.a := y.b;' >>doubling.st
 builds doubling.st
+# The same in a block that looks at the shape of what it holds, as FB_Reinit makes it.
+sed '/^PROGRAM/,$d' doubling.st >shapes.st
+cat >>shapes.st <<'EOF'
+FUNCTION_BLOCK Holder
+VAR list : s29; END_VAR
+METHOD FB_Init : BOOL
+VAR_INPUT bInitRetains : BOOL; bInCopyCode : BOOL; END_VAR
+list.a := list.b;
+END_METHOD
+END_FUNCTION_BLOCK
+EOF
+main 'x : Holder;' 'x();' >>shapes.st
+builds shapes.st
+# 2^40 parts of types without a name. What is too large is said, and nothing else is looked for.
+awk 'BEGIN { printf "TYPE T : STRUCT "; for (i = 0; i < 40; ++i) printf "a, b : STRUCT "
+  printf "x : BIT; "; for (i = 0; i < 40; ++i) printf "END_STRUCT; "; print "END_STRUCT END_TYPE" }' \
+  >nameless.st
+main 'x : T; y : T;' 'x := y; x.a := y.b;' >>nameless.st
+refuses nameless.st 'R0118: `STRUCT a : [^`]* [.][.][.]` needs [0-9]+ bytes; the limit is' 7
+[ "$(wc -c <err)" -lt 2000 ] || fail "all of a type without a name in a message"
 awk 'BEGIN { print "FUNCTION_BLOCK s0 VAR a : BYTE; END_VAR a := 1; END_FUNCTION_BLOCK"
   for (i = 1; i < 31; ++i) printf "FUNCTION_BLOCK s%d VAR a, b : s%d; END_VAR a(); b(); END_FUNCTION_BLOCK\n", i, i - 1 }' >blocks.st
 main 'x : s30;' 'x();' >>blocks.st

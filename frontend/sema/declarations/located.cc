@@ -1,36 +1,13 @@
 // Variables at addresses (AT %QW4) and addresses in code (%QW4).
 #include <algorithm>
-#include <unordered_set>
 
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/location.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
-
-ir::TypeId element_of(const ir::TypeTable& types, ir::TypeId type) {
-  while (types[type].kind == ir::Kind::kArray) type = types[type].base;
-  return type;
-}
-
-// Is there a member like that in a structure, at any depth? Looks at each type once: of thirty that
-// hold the one before twice, the last has a billion parts.
-template <class Test>
-bool any_member(const ir::TypeTable& types, ir::TypeId structure, Test test) {
-  std::vector<ir::TypeId> open{element_of(types, structure)};
-  std::unordered_set<ir::TypeId> seen;
-  while (!open.empty()) {
-    const ir::TypeId type = open.back();
-    open.pop_back();
-    if (!ir::is_structure(types[type].kind) || !seen.insert(type).second) continue;
-    for (const ir::Member& member : types[type].members) {
-      if (test(member)) return true;
-      open.push_back(element_of(types, member.type));
-    }
-  }
-  return false;
-}
 
 // How many of the globals have their key.
 constexpr const char* kKeyCount = "@";
@@ -56,20 +33,14 @@ uint32_t Variables::address_bits(ir::TypeId type) const {
   return machine == ir::Scalar::kBool ? 1 : ir::scalar_size(machine) * 8;
 }
 
-bool Variables::holds_instance(ir::TypeId type) const {
-  const ir::TypeTable& types = sema_.program.types;
-  const auto is_one = [&](ir::TypeId at) { return types.is_instance(element_of(types, at)); };
-  return is_one(type) ||
-         any_member(types, type, [&](const ir::Member& member) { return is_one(member.type); });
-}
-
 // Why a variable of this type cannot be there; empty: it can. An open address (`%I*`) may leave
 // out the size.
 std::string Variables::address_problem(ir::TypeId type, const ir::DirectAddress& address,
                                        bool open) {
   std::string is = "is `" + sema_.report.type_text(type) + "`";
   bool marker = address.area == ir::DirectArea::kMarker;
-  bool plain = ir::is_locatable(sema_.program.types, type) || (marker && !holds_instance(type));
+  bool plain = ir::is_locatable(sema_.program.types, type) ||
+               (marker && !ir::holds_instance(sema_.program.types, type));
   if (!plain) return is + ", which cannot have an address";
   if (uint32_t bits = address_bits(type); bits != 0) {
     if (bits == address.bit_size || (open && address.bit_size == 0)) return {};
@@ -111,7 +82,7 @@ bool Variables::check_field_address(const VarDecl& field, ir::TypeId type) {
 }
 
 bool Variables::holds_input(ir::TypeId type) const {
-  return any_member(sema_.program.types, type, [](const ir::Member& member) {
+  return ir::any_member(sema_.program.types, type, [](const ir::Member& member) {
     return member.address.area == ir::DirectArea::kInput;
   });
 }

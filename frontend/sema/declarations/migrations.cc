@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <set>
 
-#include "base/limits.h"
 #include "frontend/lex/pragma.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
@@ -135,7 +135,7 @@ bool Migrations::add_value(ir::Migration& row, const Variable& variable) {
   }
   const std::string name(own != nullptr ? own->value : variable.name.text);
   if (!variable.type.valid()) return false;
-  if (!is_plain(variable.type, 0)) {
+  if (!is_plain(variable.type)) {
     refuse(variable.name.span,
            quoted(variable.name.text) + " is a reference or holds one; it would mean nothing here",
            "migrate plain data");
@@ -159,7 +159,7 @@ bool Migrations::is_new_member(const ir::Migration& row, const Variable& variabl
   const ir::TypeTable& types = sema_.program.types;
   const int32_t number = types.find_member(row.type, name);
   if (number < 0) {
-    refuse(variable.name.span, quoted(types.text(row.type)) + " has no variable " + quoted(name),
+    refuse(variable.name.span, quoted(types.shown(row.type)) + " has no variable " + quoted(name),
            "give the parameter its name, or write {new := 'name'} before it");
     return false;
   }
@@ -171,18 +171,17 @@ bool Migrations::is_new_member(const ir::Migration& row, const Variable& variabl
   }
   if (member.type == variable.type) return true;
   refuse(variable.name.span,
-         quoted(name) + " is " + types.text(member.type) + ", " + quoted(variable.name.text) +
-             " is " + types.text(variable.type),
+         quoted(name) + " is " + types.shown(member.type) + ", " + quoted(variable.name.text) +
+             " is " + types.shown(variable.type),
          "declare it as " + types.text(member.type));
   return false;
 }
 
-bool Migrations::is_plain(ir::TypeId id, uint32_t depth) const {
+bool Migrations::is_plain(ir::TypeId id) const {
   const ir::TypeTable& types = sema_.program.types;
-  if (types.is_reference(id) || types.is_instance(id) || depth > base::kMaxNesting) return false;
-  if (types[id].kind == ir::Kind::kArray) return is_plain(types[id].base, depth + 1);
-  return std::all_of(types[id].members.begin(), types[id].members.end(),
-                     [&](const ir::Member& member) { return is_plain(member.type, depth + 1); });
+  return !ir::any_part(types, id, [&](ir::TypeId part) {
+    return types.is_reference(part) || types.is_instance(part);
+  });
 }
 
 void Migrations::check_code() {

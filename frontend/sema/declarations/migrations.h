@@ -22,7 +22,7 @@ class Migrations : public Phase {
   bool read_other(ir::Migration& row, const Attribute& rule);
   bool add_value(ir::Migration& row, const Variable& variable);
   bool is_new_member(const ir::Migration& row, const Variable& variable, const std::string& name);
-  bool is_plain(ir::TypeId type, uint32_t depth) const;
+  bool is_plain(ir::TypeId type) const;
   void check_function(const ir::Migration& row);
   void refuse(base::SourceSpan span, std::string text, std::string fix);
 };

@@ -3,9 +3,9 @@
 // function has code for each type that it is called with: calls/open_functions.h.) A function that
 // is called with such a parameter has it as the caller does.
 #include "frontend/sema/declarations/variables.h"
-#include "frontend/sema/objects/pools.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types/types.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 
@@ -22,7 +22,7 @@ ir::TypeId Variables::open_array_type(const Spec& spec) {
   const ir::TypeId element = ask<Types>().resolve_type(spec.element).type;
   if (!element.valid()) return {};
   ir::TypeTable& types = sema_.program.types;
-  if (ask<Pools>().holds_instance(element) || types.is_reference(element)) {
+  if (ir::holds_instance(types, element) || types.is_reference(element)) {
     error(DiagnosticCode::kSectionNotAllowed, spec.span,
           "an array of `" + sema_.report.type_text(element) + "` with open bounds `[*]`",
           "write the bounds");

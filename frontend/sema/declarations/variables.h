@@ -36,7 +36,6 @@ class Variables : public Phase {
   void resolve_initial(Variable& variable);
   void check_placement(const Variable& variable);
   void check_address(const Variable& variable);
-  bool holds_instance(ir::TypeId type) const;
   void check_edge(const Variable& variable);
   // open_arrays.cc
   bool is_open_array(const Variable& variable) const;

@@ -162,17 +162,6 @@ bool Pools::leaves(ir::TypeId type, Seen& seen) {
   });
 }
 
-bool Pools::holds_instance(ir::TypeId type) const {
-  const ir::TypeTable& types = sema_.program.types;
-  if (!types.contains(type)) return false;
-  while (types[type].kind == ir::Kind::kArray) type = types[type].base;
-  if (types.is_instance(type)) return true;
-  if (!types.has_members(type)) return false;
-  const std::vector<ir::Member>& members = types[type].members;
-  return std::any_of(members.begin(), members.end(),
-                     [&](const ir::Member& member) { return holds_instance(member.type); });
-}
-
 const Pool* Pools::of_new(ExprId id) {
   if (!sema_.pools.declared) {
     error(DiagnosticCode::kBadPool, sema_.tree[id].span, "no initial value is taken from a pool",

@@ -36,8 +36,6 @@ class Pools : public Phase {
   void add_methods(ir::TypeId type);
   // Is there anything in it that leaves by FB_Exit?
   bool leaves(ir::TypeId type);
-  // An instance, or an array or structure with one?
-  bool holds_instance(ir::TypeId type) const;
 
  private:
   // Types, each looked at once: there may be many ways to one, and one that contains itself is an

@@ -3,6 +3,7 @@
 // calls those of its members and then their FB_Init; a hidden program __START does so for the
 // globals and calls __START of every program instance.
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/hash.h"
 #include "base/limits.h"
@@ -29,24 +30,39 @@ bool has_arguments(const Tree& tree, SpecId id) {
   return spec.kind == SpecKind::kNamed && spec.has_args;
 }
 
-// What of a type decides how a variable of it is laid out; instances have areas of their own.
-std::string shape(const ir::TypeTable& types, ir::TypeId id) {
-  if (!id.valid()) return "?";  // after an error that was said
-  const ir::Type& type = types[id];
-  if (type.kind == ir::Kind::kArray) {
-    std::string text = "[";
-    for (const ir::Dimension& dim : type.dims) {
-      text += std::to_string(dim.low) + ".." + std::to_string(dim.high) + ",";
+// What of a type decides how a variable of it is laid out; instances have areas of their own. Of
+// what is long, a hash: of thirty structures that hold the one before twice, the last has a billion
+// parts.
+class Shapes {
+ public:
+  explicit Shapes(const ir::TypeTable& types) : types_(types) {}
+
+  std::string of(ir::TypeId id) {
+    if (!id.valid()) return "?";  // after an error that was said
+    const ir::Type& type = types_[id];
+    if (type.kind == ir::Kind::kArray) {
+      std::string text = "[";
+      for (const ir::Dimension& dim : type.dims) {
+        text += std::to_string(dim.low) + ".." + std::to_string(dim.high) + ",";
+      }
+      return text + "]" + of(type.base);
     }
-    return text + "]" + shape(types, type.base);
+    if (!ir::is_structure(type.kind)) return types_.text(id);
+    if (const auto known = known_.find(id); known != known_.end()) return known->second;
+    std::string text = types_.text(id);
+    for (const ir::Member& member : type.members) {
+      text += "{" + ir::fold_name(member.name) + ":" + of(member.type) + "}";
+    }
+    if (text.size() > kMaxText) text = "#" + std::to_string(base::hash64(base::as_bytes(text)));
+    return known_[id] = text;
   }
-  std::string text = types.text(id);
-  if (!ir::is_structure(type.kind)) return text;
-  for (const ir::Member& member : type.members) {
-    text += "{" + ir::fold_name(member.name) + ":" + shape(types, member.type) + "}";
-  }
-  return text;
-}
+
+ private:
+  static constexpr size_t kMaxText = 16 * 1024;
+
+  const ir::TypeTable& types_;
+  std::unordered_map<ir::TypeId, std::string> known_;  // of structures
+};
 
 }  // namespace
 
@@ -238,9 +254,10 @@ void Objects::add_stamp(PouInfo& block) {
 // By names and types of its members, in whatever order they are declared.
 uint32_t Objects::stamp_of(const PouInfo& block) const {
   std::vector<std::string> lines;
+  Shapes shapes(sema_.program.types);
   for (const ir::Member& member : sema_.program.types[block.self].members) {
     if (member.section == ir::Section::kStamp) continue;
-    lines.push_back(ir::fold_name(member.name) + ":" + shape(sema_.program.types, member.type));
+    lines.push_back(ir::fold_name(member.name) + ":" + shapes.of(member.type));
   }
   std::sort(lines.begin(), lines.end());
   std::string text;
