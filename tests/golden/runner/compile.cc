@@ -94,7 +94,7 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   // The runner checks the IR of every golden file, whatever its mode.
   base::Status sound = ir::verify(*program);
   if (!sound.ok()) return sound.error();
-  Program out{std::move(*program), {}, {}, {}};
+  Program out{std::move(*program), {}, {}, {}, {}};
   base::Result<ir::PassSet> passes = passes_of(test);
   if (!passes.ok()) return passes.error();
   out.optimised = out.program;

@@ -12,6 +12,7 @@
 #include "ir/bytecode/object.h"
 #include "ir/bytecode/verify.h"
 #include "ir/program/ir.h"
+#include "tests/golden/runner/state_texts.h"
 #include "tests/golden/runner/test_file.h"
 
 namespace golden {
@@ -22,6 +23,7 @@ struct Program {
   std::vector<ir::Object> objects;  // of `optimised`
   // Of a link without a base, which every tier begins with: made once.
   mutable std::optional<ir::VerifiedImage> cold;
+  mutable StateTexts states;
 };
 
 // Diagnostics as "line:column: error[E3001]: text", sorted.

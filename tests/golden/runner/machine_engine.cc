@@ -125,7 +125,7 @@ class MachineEngine : public Engine {
   }
 
   std::string state() const override {
-    return ir::state_text(controller_->image(), controller_->memory().view());
+    return program_->states.text(controller_->verified(), controller_->memory().view());
   }
   base::Status set(const std::string& path, const std::string& value) override {
     return controller_->set(path, value);
