@@ -43,6 +43,7 @@ struct Declarations {
   std::deque<Variable> variables;  // by VarId
   std::vector<Name> any_parts;     // any_inputs.cc: variables whose pvalue and so on is named
   bool any_parts_known = false;
+  bool globals_placed = false;     // all of global_order are members; later ones at once
   bool complete = false;           // all interfaces are resolved; later ones at once
 
   // By name; types and POUs by their full name.

@@ -89,13 +89,13 @@ VarId Collection::add_instance_variable(Variable variable, PouInfo& method) {
 
 // After the globals that are there.
 void Variables::place_global(VarId id) {
-  if (!sema_.declared.complete) {
+  if (!sema_.declared.globals_placed) {
     sema_.declared.variables[id.index].index =
         static_cast<uint32_t>(sema_.declared.global_order.size());
     sema_.declared.global_order.push_back(id);
     return;
   }
-  // The globals are laid out already: bare addresses may stand after them.
+  // The globals are members already: bare addresses may stand after them.
   sema_.declared.variables[id.index].index =
       static_cast<uint32_t>(sema_.program.types[sema_.program.globals].members.size());
   const Variable& resolved = resolve(id);

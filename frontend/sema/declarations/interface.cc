@@ -75,6 +75,7 @@ void Interfaces::resolve_globals() {
     sema_.program.types.edit(sema_.program.globals)
         .members.push_back(member_of(variable, ir::Section::kGlobal));
   }
+  sema_.declared.globals_placed = true;
   if (sema_.for_tests()) ask<TestBuild>().add_test_globals();
 }
 
