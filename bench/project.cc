@@ -46,14 +46,17 @@ std::string filled(const char* text, uint32_t number, Random& random) {
   return out;
 }
 
-// The program that calls all blocks of a file.
+// The program that calls all blocks of a file, with inputs and outputs of its own.
 std::string program(uint32_t file, const std::vector<uint32_t>& blocks, Random& random) {
   const std::string area = std::to_string(file);
   std::string out = "VAR_GLOBAL\n";
-  for (const char* name : {"Enable", "Stop", "Reset", "Ready"}) {
-    out += "  Area" + area + "_" + name + " : BOOL;\n";
+  uint32_t bit = 0;
+  for (const char* name : {"Enable", "Stop", "Reset"}) {
+    out += "  Area" + area + "_" + name + " AT %IX" + area + "." + std::to_string(bit++) +
+           " : BOOL;\n";
   }
-  out += "  Area" + area + "_Level : REAL;\n  Area" + area + "_Count : DINT;\nEND_VAR\n\n";
+  out += "  Area" + area + "_Ready AT %QX" + area + ".0 : BOOL;\n  Area" + area + "_Level AT %QD" +
+         std::to_string(1000 + file) + " : REAL;\n  Area" + area + "_Count : DINT;\nEND_VAR\n\n";
   out += "PROGRAM Area" + area + "\nVAR\n";
   for (uint32_t block : blocks) {
     out += filled(kProjectKinds[block % kKinds].instance, block, random);

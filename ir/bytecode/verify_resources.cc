@@ -3,10 +3,10 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/device_tasks.h"
+#include "ir/bytecode/located_layouts.h"
 #include "ir/bytecode/verify_parts.h"
 #include "ir/types/location.h"
 #include "ir/types/longest_time.h"
-#include "ir/types/natural_layout.h"
 #include "ir/types/plain_data.h"
 
 namespace ir::verification {
@@ -19,7 +19,7 @@ class ResourcesVerifier {
 
   base::Status run() {
     if (base::Status s = check_tasks(); !s) return s;
-    const Layouts natural = image_.io.empty() ? Layouts{} : natural_layouts(image_.types);
+    const Layouts natural = located_layouts(image_);
     for (uint32_t i = 0; i < image_.io.size(); ++i) {
       if (base::Status s = check_binding(natural, i); !s) return s;
     }

@@ -27,6 +27,10 @@ class Builder {
     }
     return std::move(layouts_);
   }
+  Layouts build(std::span<const TypeId> wanted) {
+    for (const TypeId id : wanted) of(id);
+    return std::move(layouts_);
+  }
   uint32_t size(TypeId id) { return of(id).size; }
 
  private:
@@ -98,5 +102,9 @@ class Builder {
 uint32_t natural_size(const TypeTable& types, TypeId type) { return Builder(types).size(type); }
 
 Layouts natural_layouts(const TypeTable& types) { return Builder(types).build(); }
+
+Layouts natural_layouts(const TypeTable& types, std::span<const TypeId> wanted) {
+  return Builder(types).build(wanted);
+}
 
 }  // namespace ir

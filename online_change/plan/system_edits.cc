@@ -4,11 +4,11 @@
 #include <iterator>
 #include <map>
 
+#include "ir/bytecode/located_layouts.h"
 #include "ir/bytecode/renames.h"
 #include "ir/program/task_policy.h"
 #include "ir/types/address_text.h"
 #include "ir/types/location.h"
-#include "ir/types/natural_layout.h"
 #include "ir/types/value_text.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/fates.h"
@@ -91,8 +91,8 @@ class SystemEdits {
         old_.globals == new_.globals && old_.io == new_.io) {
       return;
     }
-    old_natural_ = ir::natural_layouts(old_.types);
-    new_natural_ = ir::natural_layouts(new_.types);
+    old_natural_ = ir::located_layouts(old_);
+    new_natural_ = ir::located_layouts(new_);
     const std::map<std::string, const ir::IoBinding*> before = bindings(old_);
     const std::map<std::string, const ir::IoBinding*> after = bindings(new_);
     const Ranges outputs = outputs_after();

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <map>
 
+#include "ir/bytecode/located_layouts.h"
 #include "ir/types/location.h"
-#include "ir/types/natural_layout.h"
+#include "vm/load/same_code.h"
 #include "vm/load/writers.h"
 
 namespace vm {
 namespace {
 
-struct Output {  // a scalar with an address
+struct Output {        // a scalar with an address
   uint64_t begin = 0;  // bits
   uint64_t end = 0;
   Variable variable;
@@ -20,8 +21,8 @@ struct Output {  // a scalar with an address
 
 // Located arrays element by element; other values of several parts as wholes, which nobody writes
 // as a scalar, so nothing is said of them.
-std::vector<Output> outputs_of(const ir::Image& image) {
-  const ir::Layouts natural = ir::natural_layouts(image.types);
+std::vector<Output> located_outputs(const ir::Image& image) {
+  const ir::Layouts natural = ir::located_layouts(image);
   std::vector<Output> out;
   for (const ir::IoBinding& row : image.io) {
     if (row.address.area != ir::DirectArea::kOutput) continue;
@@ -31,8 +32,7 @@ std::vector<Output> outputs_of(const ir::Image& image) {
     if (size == 0 || !image.types.is_scalar(part)) continue;
     const uint64_t count = image.layouts[row.type].size / size;
     if (count == 0) continue;
-    const uint64_t bits =
-        ir::located_bits(image.types, natural, row.type, row.address) / count;
+    const uint64_t bits = ir::located_bits(image.types, natural, row.type, row.address) / count;
     for (uint64_t i = 0; i < count; ++i) {
       Output output;
       output.begin = row.address.bit_offset + i * bits;
@@ -43,10 +43,37 @@ std::vector<Output> outputs_of(const ir::Image& image) {
       out.push_back(output);
     }
   }
-  std::vector<Variable> variables;
-  for (const Output& output : out) variables.push_back(output.variable);
-  for (const Writer& writer : find_writers(image, variables)) out[writer.variable].written = true;
   return out;
+}
+
+std::vector<Variable> variables_of(const std::vector<Output>& outputs) {
+  std::vector<Variable> variables;
+  variables.reserve(outputs.size());
+  for (const Output& output : outputs) variables.push_back(output.variable);
+  return variables;
+}
+
+std::vector<Output> outputs_of(const ir::Image& image) {
+  std::vector<Output> out = located_outputs(image);
+  for (const Writer& writer : find_writers(image, variables_of(out))) {
+    out[writer.variable].written = true;
+  }
+  return out;
+}
+
+// Who writes an output is decided by what code does, all of it together: the more, the more
+// writers. So nobody is missed where the POUs that are others do what they did, and more.
+bool all_stay_written(const ir::Image& old_image, const ir::Image& new_image) {
+  if (!have_same_places(old_image, new_image) || old_image.io != new_image.io) return false;
+  std::vector<uint32_t> others;
+  for (uint32_t pou = 0; pou < new_image.pous.size(); ++pou) {
+    if (!have_same_code(old_image, new_image, pou)) others.push_back(pou);
+  }
+  if (others.size() > new_image.pous.size() / 4) return false;  // not much less than all of them
+  if (others.empty()) return true;
+  const std::vector<Variable> outputs = variables_of(located_outputs(new_image));
+  return write_effects(new_image, outputs, others)
+      .include(write_effects(old_image, outputs, others));
 }
 
 // Sorted ranges of bits that do not touch.
@@ -78,7 +105,7 @@ std::vector<LeftOutput> left_outputs(const ir::Image& old_image, const ir::Image
   const bool any = std::any_of(new_image.io.begin(), new_image.io.end(), [](const auto& row) {
     return row.address.area == ir::DirectArea::kOutput;
   });
-  if (!any) return left;
+  if (!any || all_stay_written(old_image, new_image)) return left;
   Bits bound;
   Bits written;
   for (const Output& output : outputs_of(new_image)) {

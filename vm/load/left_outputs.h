@@ -17,7 +17,8 @@ struct LeftOutput {
 };
 
 // `old_image` has the names of the new one. What a reference or a VAR_IN_OUT of the new version may
-// lead to counts as written. Cost: one pass over the code of each version that has outputs.
+// lead to counts as written. Cost: one pass over the code of each version that has outputs; where
+// the POUs that are others do what they did, and more, over the code of these alone.
 std::vector<LeftOutput> left_outputs(const ir::Image& old_image, const ir::Image& new_image);
 
 }  // namespace vm

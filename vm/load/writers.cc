@@ -33,6 +33,7 @@ class Search {
  public:
   Search(const ir::Image& image, std::span<const Variable> variables);
   std::vector<Writer> run();
+  WriteEffects effects(std::span<const uint32_t> pous);
 
  private:
   struct At {
@@ -370,7 +371,38 @@ std::vector<Writer> Search::run() {
   return std::move(found_);
 }
 
+WriteEffects Search::effects(std::span<const uint32_t> pous) {
+  for (const uint32_t pou : pous) look_at(pou);
+  WriteEffects out;
+  out.of_variables.resize(targets_.size());
+  for (const Writer& writer : found_) out.of_variables[writer.variable] |= WriteEffects::kWrites;
+  for (size_t i = 0; i < targets_.size(); ++i) {
+    if (targets_[i].in_out) out.of_variables[i] |= WriteEffects::kPasses;
+    if (targets_[i].referenced) out.of_variables[i] |= WriteEffects::kReferences;
+  }
+  for (const Unknown& unknown : unknown_) {
+    const uint64_t uses =
+        static_cast<uint64_t>(unknown.use) << 8 | static_cast<uint64_t>(unknown.from);
+    out.of_addresses.insert(
+        {uses, unknown.region.type.index, unknown.region.dim, unknown.offset, unknown.size});
+  }
+  out.calculates = calculates_;
+  return out;
+}
+
 }  // namespace
+
+bool WriteEffects::include(const WriteEffects& others) const {
+  const auto has_all = [](uint8_t have, uint8_t wanted) { return (wanted & ~have) == 0; };
+  return std::ranges::equal(of_variables, others.of_variables, has_all) &&
+         std::ranges::includes(of_addresses, others.of_addresses) &&
+         (calculates || !others.calculates);
+}
+
+WriteEffects write_effects(const ir::Image& image, std::span<const Variable> variables,
+                           std::span<const uint32_t> pous) {
+  return Search(image, variables).effects(pous);
+}
 
 std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables) {
   return Search(image, variables).run();

@@ -2,7 +2,9 @@
 // forced (forced_code.h), and what stands against that. One pass over all code of an image.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -30,5 +32,21 @@ struct Writer {
 inline constexpr size_t kMostAddressPous = 100;
 // Sorted by variable, POU and unit.
 std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables);
+
+// What code of some POUs does that decides who writes the variables.
+struct WriteEffects {
+  // Of a variable; each more can only mean more writers.
+  enum : uint8_t { kWrites = 1, kPasses = 2, kReferences = 4 };
+  std::vector<uint8_t> of_variables;
+  // Stores and further uses of addresses from outside: which, of what, from where on, how many
+  // bytes.
+  std::set<std::array<uint64_t, 5>> of_addresses;
+  bool calculates = false;  // addresses of any variable
+
+  // Does code that does all this write whatever code with these effects writes?
+  bool include(const WriteEffects& others) const;
+};
+WriteEffects write_effects(const ir::Image& image, std::span<const Variable> variables,
+                           std::span<const uint32_t> pous);
 
 }  // namespace vm

@@ -1,8 +1,6 @@
 #include "vm/native/code_facts.h"
 
 #include <algorithm>
-#include <cstring>
-#include <functional>
 
 #include "ir/bytecode/regions.h"
 
@@ -108,43 +106,6 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
     }
   }
   return base::sha256({reinterpret_cast<const uint8_t*>(out.data()), out.size() * sizeof out[0]});
-}
-
-// Numbers of constants, bounds and ranges stay; more of them may follow.
-bool rely_on_the_same(const ir::Image& before, const ir::Image& after) {
-  const auto begins_with = [](const auto& longer, const auto& begin, auto same) {
-    return longer.size() >= begin.size() &&
-           std::equal(begin.begin(), begin.end(), longer.begin(), same);
-  };
-  return before.types.is_one_with(after.types) && before.layouts.is_one_with(after.layouts) &&
-         before.instances.is_one_with(after.instances) && before.data.is_one_with(after.data) &&
-         before.globals == after.globals && before.pous.size() == after.pous.size() &&
-         std::equal(before.overrides.begin(), before.overrides.end(), after.overrides.begin(),
-                    after.overrides.end(),
-                    [](const ir::LinkedOverride& a, const ir::LinkedOverride& b) {
-                      return a.type == b.type && a.prototype == b.prototype && a.target == b.target;
-                    }) &&
-         begins_with(after.pool, before.pool, std::equal_to<>()) &&
-         begins_with(after.bounds.all(), before.bounds.all(),
-                     [](const ir::LinkedBound& a, const ir::LinkedBound& b) {
-                       return a.low == b.low && a.count == b.count && a.stride == b.stride;
-                     }) &&
-         begins_with(after.ranges.all(), before.ranges.all(),
-                     [](const ir::Range& a, const ir::Range& b) {
-                       return a.low == b.low && a.high == b.high;
-                     }) &&
-         begins_with(after.pous, before.pous, [](const ir::LinkedPou& a, const ir::LinkedPou& b) {
-           return a.kind == b.kind && a.self == b.self && a.recursion_depth == b.recursion_depth;
-         });
-}
-
-bool have_same_facts(const ir::Image& before, const ir::Image& after, uint32_t number) {
-  const ir::LinkedPou& a = before.pous[number];
-  const ir::LinkedPou& b = after.pous[number];
-  return a.frame_size == b.frame_size && a.slots.is_one_with(b.slots) &&
-         a.merges.is_one_with(b.merges) && a.unit_count == b.unit_count &&
-         std::memcmp(before.code.data() + a.first_unit, after.code.data() + b.first_unit,
-                     a.unit_count * sizeof(ir::Unit)) == 0;
 }
 
 }  // namespace vm::native

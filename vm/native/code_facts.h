@@ -14,9 +14,4 @@ namespace vm::native {
 base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
                       std::vector<uint64_t>& scratch);
 
-// Do facts_of() two versions rely on the same tables, as far as the first one has them?
-bool rely_on_the_same(const ir::Image& before, const ir::Image& after);
-// Then: are those of this POU, which both have, the same? False says nothing.
-bool have_same_facts(const ir::Image& before, const ir::Image& after, uint32_t number);
-
 }  // namespace vm::native

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "vm/exec/context.h"
+#include "vm/load/same_code.h"
 #include "vm/native/code_facts.h"
 #include "vm/native/code_memory.h"
 #include "vm/native/emit.h"
@@ -227,10 +228,10 @@ std::vector<base::Digest> facts_of_all(const Job& job, const ImageFacts& common,
   if (job.running == nullptr) return facts;
   facts.reserve(job.image.pous.size());
   const bool alike = job.running_image != nullptr && job.versions.empty() &&
-                     rely_on_the_same(*job.running_image, job.image);
+                     stand_on_the_same(*job.running_image, job.image);
   for (uint32_t number = 0; number < job.image.pous.size(); ++number) {
     const bool same = alike && number < job.running->size() && (*job.running)[number]->has_facts &&
-                      have_same_facts(*job.running_image, job.image, number);
+                      have_same_code(*job.running_image, job.image, number);
     facts.push_back(same ? (*job.running)[number]->facts
                          : facts_of(job.image, common, job.image.pous[number], scratch));
   }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "ir/bytecode/located_layouts.h"
 #include "ir/types/location.h"
-#include "ir/types/natural_layout.h"
 
 namespace vm {
 namespace {
@@ -46,7 +46,7 @@ void mark_own_outputs(TaskTables& tables) {
   const ir::Image& image = tables.version.image();
   if (image.output_bytes == 0) return;
   const std::vector<Area> areas = areas_by_place(image);
-  const ir::Layouts natural = ir::natural_layouts(image.types);
+  const ir::Layouts natural = ir::located_layouts(image);
   for (const ir::IoBinding& io : image.io) {
     if (io.address.area != ir::DirectArea::kOutput) continue;
     auto behind = std::upper_bound(areas.begin(), areas.end(), io.data,

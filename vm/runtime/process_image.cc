@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "ir/bytecode/located_layouts.h"
 #include "ir/types/location.h"
-#include "ir/types/natural_layout.h"
 
 namespace vm {
 
@@ -15,7 +15,7 @@ class ProcessImage::Collector {
   // `values`: where single values of several bytes are noted too, and `reals` where REAL and LREAL
   // are; or nullptr.
   Collector(const ir::Image& image, Points* values, Points* reals)
-      : image_(image), natural_(ir::natural_layouts(image.types)), values_(values), reals_(reals) {}
+      : image_(image), natural_(ir::located_layouts(image)), values_(values), reals_(reals) {}
 
   void add(Points& points, const ir::IoBinding& binding, uint32_t limit) {
     uint64_t first_bit = binding.address.bit_offset;

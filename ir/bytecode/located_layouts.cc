@@ -1,0 +1,17 @@
+#include "ir/bytecode/located_layouts.h"
+
+#include <vector>
+
+#include "ir/types/natural_layout.h"
+
+namespace ir {
+
+Layouts located_layouts(const Image& image) {
+  std::vector<TypeId> wanted;
+  for (const IoBinding& row : image.io) {
+    if (wanted.empty() || wanted.back() != row.type) wanted.push_back(row.type);
+  }
+  return natural_layouts(image.types, wanted);
+}
+
+}  // namespace ir
