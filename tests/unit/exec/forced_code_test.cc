@@ -93,6 +93,27 @@ TEST(Forcing, WritersOfAVariableAreFound) {
   EXPECT_EQ(writers(image, "Main.d.more"), "Derived only");
 }
 
+// Each of many variables, in whatever order they are asked for, has the writers that it has alone.
+TEST(Forcing, WritersOfManyVariables) {
+  const ir::Image image = build(kProgram);
+  std::vector<std::string> paths = {"Main.many[1].out", "g",   "Main.one.inner", "last",
+                                    "Main.many[2].in",  "p.x", "Main.d.kept",    "Main.one.out",
+                                    "unwritten",        "h",   "Main.i",         "Main.many[0].in"};
+  std::vector<vm::Variable> variables;
+  for (const std::string& path : paths) variables.push_back(variable(image, path));
+  std::vector<std::vector<vm::Writer>> found(paths.size());
+  for (const vm::Writer& writer : vm::find_writers(image, variables)) {
+    found[writer.variable].push_back(writer);
+  }
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const std::vector<vm::Writer> alone = vm::find_writers(image, {&variables[i], 1});
+    const auto same = [](const vm::Writer& a, const vm::Writer& b) {
+      return a.pou == b.pou && a.unit == b.unit && a.how == b.how;
+    };
+    EXPECT_TRUE(std::ranges::equal(found[i], alone, same)) << paths[i];
+  }
+}
+
 // A slot holds the addresses of two texts in turn, and the longer one's is made in front of a
 // branch: the store behind it reaches as far as that text, not as the first one.
 TEST(Forcing, AnAddressOfTheBlockBefore) {
