@@ -10,7 +10,9 @@
 #include <condition_variable>
 #include <cstdio>
 #include <deque>
+#include <map>
 #include <mutex>
+#include <set>
 
 namespace mqtt {
 namespace {
@@ -79,16 +81,29 @@ class Mosquitto : public Broker {
     if (payload.size() > kMostPayload) return base::Error{Refusal::kTooMany, topic + ": too long"};
     {
       const std::lock_guard<std::mutex> one(mutex_);
+      if (leaving_ >= kMostLeaving || leaving_bytes_ + payload.size() > kMostLeavingBytes) {
+        return base::Error{Refusal::kTooMany,
+                           topic + ": the broker does not take what was published before"};
+      }
       ++leaving_;
+      leaving_bytes_ += payload.size();
     }
+    int number = 0;
     const int code =
-        mosquitto_publish(client_, nullptr, topic.c_str(), static_cast<int>(payload.size()),
+        mosquitto_publish(client_, &number, topic.c_str(), static_cast<int>(payload.size()),
                           payload.data(), 1, retained);
-    // Without a connection it is kept, and goes out with the next one.
-    if (code == MOSQ_ERR_SUCCESS || code == MOSQ_ERR_NO_CONN) return base::Ok{};
     const std::lock_guard<std::mutex> one(mutex_);
-    --leaving_;
-    return status_of(code, topic);
+    // Without a connection it is kept, and goes out with the next one.
+    if (code != MOSQ_ERR_SUCCESS && code != MOSQ_ERR_NO_CONN) {
+      has_left(payload.size());
+      return status_of(code, topic);
+    }
+    if (left_early_.erase(number) != 0) {
+      has_left(payload.size());
+    } else {
+      sizes_[number] = payload.size();
+    }
+    return base::Ok{};
   }
 
   base::Status subscribe(const std::string& filter) override {
@@ -110,7 +125,7 @@ class Mosquitto : public Broker {
 
   bool flush(int64_t ms) override {
     std::unique_lock<std::mutex> held(mutex_);
-    return left_.wait_for(held, std::chrono::milliseconds(ms), [this] { return leaving_ <= 0; });
+    return left_.wait_for(held, std::chrono::milliseconds(ms), [this] { return leaving_ == 0; });
   }
 
  private:
@@ -180,11 +195,23 @@ class Mosquitto : public Broker {
     event.message.retained = message->retain;
     static_cast<Mosquitto*>(self)->add(std::move(event));
   }
-  static void on_published(mosquitto*, void* self, int) {
+  // It may come before publish() knows the number.
+  static void on_published(mosquitto*, void* self, int number) {
     auto* const link = static_cast<Mosquitto*>(self);
     const std::lock_guard<std::mutex> one(link->mutex_);
-    --link->leaving_;
-    link->left_.notify_all();
+    const auto size = link->sizes_.extract(number);
+    if (size.empty()) {
+      link->left_early_.insert(number);
+    } else {
+      link->has_left(size.mapped());
+    }
+  }
+
+  // With mutex_.
+  void has_left(size_t bytes) {
+    --leaving_;
+    leaving_bytes_ -= bytes;
+    left_.notify_all();
   }
 
   mosquitto* client_ = nullptr;
@@ -193,7 +220,11 @@ class Mosquitto : public Broker {
   std::condition_variable left_;
   std::deque<Event> events_;
   size_t waiting_bytes_ = 0;  // of their payloads
-  int64_t leaving_ = 0;       // published, and not yet with the broker
+  // Published, and not yet with the broker.
+  size_t leaving_ = 0;
+  size_t leaving_bytes_ = 0;
+  std::map<int, size_t> sizes_;  // by the library's numbers
+  std::set<int> left_early_;
 };
 
 base::Error no_url(std::string_view url, const char* why) {

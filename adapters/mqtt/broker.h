@@ -18,6 +18,9 @@ inline constexpr size_t kMostPayload = 1u << 20;  // bytes; what is longer is dr
 // Messages that nobody has taken yet, and their bytes: pieces of one file and what comes beside.
 inline constexpr size_t kMostWaiting = 4096;
 inline constexpr size_t kMostWaitingBytes = 96u << 20;
+// What was published, and the broker has not said that it has it.
+inline constexpr size_t kMostLeaving = 4096;
+inline constexpr size_t kMostLeavingBytes = 256u << 20;
 
 struct Message {
   std::string topic;
@@ -39,7 +42,8 @@ class Broker {
  public:
   virtual ~Broker() = default;
   // At least once (QoS 1). `retained`: the broker keeps it for whoever subscribes later; an empty
-  // payload takes that back. kNotRunning, kTooMany.
+  // payload takes that back. kNotRunning; kTooMany: it is too long, or the broker does not take
+  // what was published before.
   virtual base::Status publish(const std::string& topic, base::ByteSpan payload, bool retained) = 0;
   virtual base::Status subscribe(const std::string& filter) = 0;
   virtual base::Status unsubscribe(const std::string& filter) = 0;

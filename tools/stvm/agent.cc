@@ -320,13 +320,14 @@ void Agent::publish_state(const vm::StatusReport* status) {
   if (!connected_) return;
   std::string text = agent_status_json(name_, about_, status, facts_);
   if (text != sent_status_) {
-    (void)ports_.broker.publish(topics_.of(name_, kAgentStatus), text_bytes(text), true);
-    sent_status_ = std::move(text);
+    const base::Status sent =
+        ports_.broker.publish(topics_.of(name_, kAgentStatus), text_bytes(text), true);
+    if (sent.ok()) sent_status_ = std::move(text);  // else the next look says it
   }
   base::Bytes bytes = encode(about_);
   if (bytes == sent_about_) return;
-  (void)ports_.broker.publish(topics_.of(name_, kAgentAbout), bytes, true);
-  sent_about_ = std::move(bytes);
+  const base::Status sent = ports_.broker.publish(topics_.of(name_, kAgentAbout), bytes, true);
+  if (sent.ok()) sent_about_ = std::move(bytes);
 }
 
 }  // namespace stvm
