@@ -29,6 +29,8 @@
 
 BUILD := build/release
 JOBS := $(shell nproc)
+# Some tests wait for what other processes do, and a core is free meanwhile.
+TEST_JOBS := $(shell expr $(JOBS) + 1)
 
 .PHONY: install deb archives all build setup demo demo-fleet test test-ansible test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
 
@@ -52,7 +54,7 @@ demo-fleet: setup
 	@scripts/demo_fleet.sh $(BUILD)/bin
 
 test: build
-	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+	@ctest --test-dir $(BUILD) --output-on-failure -j $(TEST_JOBS)
 
 test-ansible:
 	@scripts/setup.sh ansible-core
@@ -66,24 +68,24 @@ EXCEPT :=
 minimal: setup
 	@cmake --preset minimal >/dev/null
 	@cmake --build build/minimal -j $(JOBS)
-	@ctest --test-dir build/minimal --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)') $(if $(EXCEPT),-E '$(EXCEPT)')
+	@ctest --test-dir build/minimal --output-on-failure -j $(TEST_JOBS) $(if $(TESTS),-R '$(TESTS)') $(if $(EXCEPT),-E '$(EXCEPT)')
 
 # Every invariant is checked, those of hot loops too (base/check.h).
 hard: setup
 	@cmake --preset hard >/dev/null
 	@cmake --build build/hard -j $(JOBS)
-	@ctest --test-dir build/hard --output-on-failure -j $(JOBS) $(if $(TESTS),-R '$(TESTS)')
+	@ctest --test-dir build/hard --output-on-failure -j $(TEST_JOBS) $(if $(TESTS),-R '$(TESTS)')
 
 clang: setup
 	@scripts/setup.sh clang-16
 	@cmake --preset clang >/dev/null
 	@cmake --build build/clang -j $(JOBS)
-	@ctest --test-dir build/clang --output-on-failure -j $(JOBS)
+	@ctest --test-dir build/clang --output-on-failure -j $(TEST_JOBS)
 
 asan ubsan: setup
 	@cmake --preset $@ >/dev/null
 	@cmake --build build/$@ -j $(JOBS)
-	@ctest --test-dir build/$@ --output-on-failure -j $(JOBS)
+	@ctest --test-dir build/$@ --output-on-failure -j $(TEST_JOBS)
 
 empty :=
 one_of = ($(subst $(empty) ,|,$(1)))
@@ -91,27 +93,27 @@ MEMORY := exec native runtime io resources exchange online_change references sto
 asan-memory: setup
 	@cmake --preset asan >/dev/null
 	@cmake --build build/asan -j $(JOBS) --target $(MEMORY:%=test_%) golden fuzz_targets
-	@ctest --test-dir build/asan --output-on-failure -j $(JOBS) -R '^(unit_$(call one_of,$(MEMORY))|golden_.*|fuzz_.*)$$'
+	@ctest --test-dir build/asan --output-on-failure -j $(TEST_JOBS) -R '^(unit_$(call one_of,$(MEMORY))|golden_.*|fuzz_.*)$$'
 
 THREADED := base runtime io resources exchange modbus store workspace
 tsan: setup
 	@cmake --preset tsan >/dev/null
 	@cmake --build build/tsan -j $(JOBS) --target $(THREADED:%=test_%)
-	@ctest --test-dir build/tsan --output-on-failure -j $(JOBS) -R '^unit_$(call one_of,$(THREADED))$$'
+	@ctest --test-dir build/tsan --output-on-failure -j $(TEST_JOBS) -R '^unit_$(call one_of,$(THREADED))$$'
 
 # For another processor, so apart from `make test`: a build of its own, and qemu is slow.
 test-arm64: setup
 	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user
 	@cmake --preset arm64 >/dev/null
 	@cmake --build build/arm64 -j $(JOBS) --target golden differential test_native test_stdlib
-	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(JOBS) -R '^(golden_|unit_(native|stdlib)$$)'
+	@ctest --test-dir build/arm64 --output-on-failure --timeout 7200 -j $(TEST_JOBS) -R '^(golden_|unit_(native|stdlib)$$)'
 	@qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu build/arm64/tests/differential 1 50
 	@qemu-aarch64 -R 64G -L /usr/aarch64-linux-gnu build/arm64/tests/differential 1 50 --changes
 
 coverage: setup
 	@cmake --preset coverage >/dev/null
 	@cmake --build build/coverage -j $(JOBS)
-	@ctest --test-dir build/coverage --output-on-failure -j $(JOBS)
+	@ctest --test-dir build/coverage --output-on-failure -j $(TEST_JOBS)
 
 # Clouds give many processors one name: what tells them apart is their family and model.
 PROCESSOR = $(shell sed -n 's/^$(1)[^:]*: //p' /proc/cpuinfo | head -1)
