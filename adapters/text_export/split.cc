@@ -155,7 +155,11 @@ void Splitter::action() {
   word();
   skip_blanks();
   Action action;
-  action.name = std::string(word());
+  const uint32_t name = at_;
+  if (word().empty()) {  // what is no name is shown as it stands
+    while (!at_end() && text_[at_] != ':' && text_[at_] != '\n') ++at_;
+  }
+  action.name = std::string(text_.substr(name, at_ - name));
   skip_blanks();
   if (!at_end() && text_[at_] == ':') ++at_;
   body(action.body, "END_ACTION", "ACTION " + action.name);

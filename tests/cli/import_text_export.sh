@@ -160,6 +160,32 @@ refused 14 'a branch is negated, which is not known here'
 refused 8 'the power of a rung is negated, which is not known here'
 contact a | rung | body _FBD_BODY 1 >bad.exp
 refused 8 'a rung stands in a function block diagram'
+# What stands beside coils, power that is none, operands that are none.
+beside() { network; printf '_LD_ASSIGN\n'; contact a; value; printf 'ENABLELIST : 1\n_ASSIGN\n_OPERATOR\n_BOX_EXPR : 2\n'; cat; operand 1; operand 2; value; printf 'ADD\n'; value; printf '_OUTPUTS : 1\n'; output b; printf 'ENABLELIST_END\n_OUTPUTS : 0\n'; }
+: | beside | body _LD_BODY 1 >bad.exp
+refused 21 'what stands beside the coils is no box with EN'
+{ network; printf '_ASSIGN\n_OPERATOR\n_BOX_EXPR : 2\n_ENABLED\n'; operand a; operand b; value; printf 'AND\n'; value; printf '_OUTPUTS : 1\n'; output b; } |
+  body _FBD_BODY 1 >bad.exp
+refused 14 'a box has EN where no power arrives'
+{ network; printf '_ASSIGN\n'; contact a; value; printf '_OUTPUTS : 1\n'; output b; } | body _FBD_BODY 1 >bad.exp
+refused 14 'a contact stands in a network that is no ladder'
+{ network; printf '_ASSIGN\n_EMPTY\n'; value; printf '_OUTPUTS : 1\n'; output b; } | body _FBD_BODY 1 >bad.exp
+refused 13 'nothing is connected to a coil or output'
+{ network; printf '_ASSIGN\n'; operand a; value NEGATIV; printf '_OUTPUTS : 1\n'; output b; } | body _FBD_BODY 1 >bad.exp
+refused 13 'an assignment is negated, which is not known here'
+# 1,100 contacts side by side and 1,100 coils: 1,210,000 pairs.
+{ network; printf '_LD_ASSIGN\n_LD_OR\n_LD_OPERATOR : 1100\n'
+  awk 'BEGIN { for (i = 0; i < 1100; ++i) print "_LD_CONTACT\na\n_EXPRESSION\n_POSITIV" }'
+  value; value; no_boxes; printf '_OUTPUTS : 1100\n'
+  awk 'BEGIN { for (i = 0; i < 1100; ++i) print "_OUTPUT\n_POSITIV\n_NO_SET\nb" }'; } | body _LD_BODY 1 >bad.exp
+refused '[0-9]*' 'its wires connect more than 1048576 pairs'
+# The name of an action, and more than 64 MiB.
+{ contact a | rung | body _LD_BODY 1; printf 'ACTION 1x:\na := b;\nEND_ACTION\n'; } >bad.exp
+expect 1 stc import bad.exp -o bad --force
+said 'E1074.*an action is called `1x`, which is no name'
+truncate -s 67108865 large.exp
+expect 1 stc import large.exp -o bad --force
+said 'larger than 67108864 bytes'
 # A million levels, a million promised elements.
 { network; printf '_ASSIGN\n'; awk 'BEGIN { for (i = 0; i < 1000000; ++i) print "_ASSIGN" }'; } | body _FBD_BODY 1 >bad.exp
 refused 269 'its elements are nested deeper than 256 levels'
