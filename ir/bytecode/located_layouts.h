@@ -5,7 +5,7 @@
 
 namespace ir {
 
-// natural_layouts() of the types of Image::io, which are sound.
+// natural_layouts() of the types of Image::io; the types themselves are sound.
 Layouts located_layouts(const Image& image);
 
 }  // namespace ir

@@ -90,9 +90,7 @@ Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image
                same_instances(known, image_);
   code_ = !image_.instances.empty() && image_.instances[0].data == known.instances[0].data;
   if (!code_) return;
-  const auto pool =
-      std::mismatch(known.pool.begin(), known.pool.end(), image_.pool.begin(), image_.pool.end());
-  same_pool_ = static_cast<size_t>(pool.first - known.pool.begin());
+  find_changed_constants();
   const auto bounds = std::mismatch(
       known.bounds.begin(), known.bounds.end(), image_.bounds.begin(), image_.bounds.end(),
       [](const LinkedBound& a, const LinkedBound& b) { return a.from == b.from; });
@@ -147,6 +145,24 @@ bool Likeness::same_roles() const {
                     });
 }
 
+// The linker gives a place that is free to another constant, so one in the middle may change.
+void Likeness::find_changed_constants() {
+  const base::Bytes& known = like_->image.pool;
+  const base::Bytes& pool = image_.pool;
+  const size_t both = std::min(known.size(), pool.size());
+  const auto first = std::mismatch(known.begin(), known.begin() + both, pool.begin()).first;
+  changed_begin_ = static_cast<size_t>(first - known.begin());
+  changed_end_ = both;
+  while (changed_end_ > changed_begin_ && known[changed_end_ - 1] == pool[changed_end_ - 1]) {
+    --changed_end_;
+  }
+}
+
+bool Likeness::is_same_constant(const Extent& bytes) const {
+  const size_t end = size_t{bytes.offset} + bytes.size;
+  return end <= image_.pool.size() && (end <= changed_begin_ || changed_end_ <= bytes.offset);
+}
+
 // Nobody looks at the slots of a body, which has no parameters.
 void Likeness::find_changed_parameters() {
   new_parameters_.resize(image_.pous.size());
@@ -166,9 +182,12 @@ bool Likeness::same_code(uint32_t pou) const {
 std::shared_ptr<const CodeFacts> Likeness::code(uint32_t pou) const {
   if (!code_ || !same_code(pou)) return nullptr;
   const std::shared_ptr<const CodeFacts>& facts = like_->code[pou];
-  if (facts == nullptr || facts->pool_end > same_pool_ || facts->bounds_end > same_bounds_ ||
+  if (facts == nullptr || facts->bounds_end > same_bounds_ ||
       facts->ranges_end > image_.ranges.size()) {
     return nullptr;
+  }
+  for (const Extent& constant : facts->constants) {
+    if (!is_same_constant(constant)) return nullptr;
   }
   for (const uint32_t named : facts->parameters_of) {
     if (new_parameters_[named]) return nullptr;

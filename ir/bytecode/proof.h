@@ -11,8 +11,8 @@
 #include "base/result.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/image_beside.h"
-#include "ir/bytecode/verify.h"
 #include "ir/bytecode/name_index.h"
+#include "ir/bytecode/verify.h"
 #include "ir/bytecode/verify_parts.h"
 
 namespace ir::verification {
@@ -61,6 +61,8 @@ class Likeness {
   bool same_roles() const;
   bool same_code(uint32_t pou) const;
   void find_changed_parameters();
+  void find_changed_constants();
+  bool is_same_constant(const Extent& bytes) const;
 
   const Proof* like_;
   const Image& image_;
@@ -69,8 +71,10 @@ class Likeness {
   bool instances_ = false;
   bool code_ = false;                 // POUs can be the same
   std::vector<bool> new_parameters_;  // by POU: callers find other slots
-  size_t same_pool_ = 0;              // so many bytes from the beginning
-  size_t same_bounds_ = 0;            // so many rows
+  // Constants: from the first byte that is another one to behind the last one.
+  size_t changed_begin_ = 0;
+  size_t changed_end_ = 0;
+  size_t same_bounds_ = 0;  // so many rows
 };
 
 }  // namespace ir::verification

@@ -204,7 +204,8 @@ class CodeVerifier {
   bool end_of_arguments(const char* where);
 
   // Constants that the answer relies on (proof.h).
-  void uses_pool(uint64_t end) { facts_.pool_end = std::max(facts_.pool_end, end); }
+  void uses_pool(uint32_t offset, uint64_t size);
+  void join_constants();
   bool check_bounds(uint32_t number);
 
   // verify_methods.cc

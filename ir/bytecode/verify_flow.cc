@@ -103,6 +103,7 @@ base::Result<CodeFacts> CodeVerifier::run() {
          "merge at unit " + std::to_string(pou_.merges[next_merge_].unit) + " is no instruction");
     return *error_;
   }
+  join_constants();
   return std::move(facts_);
 }
 

@@ -90,11 +90,35 @@ bool CodeVerifier::check_access(const ScalarPlace& there, Class cls, bool write)
   return true;
 }
 
+// They lie in the pool.
+void CodeVerifier::uses_pool(uint32_t offset, uint64_t size) {
+  facts_.constants.push_back({offset, static_cast<uint32_t>(size)});
+}
+
+// However many units name them, in whatever order.
+void CodeVerifier::join_constants() {
+  std::vector<Extent>& named = facts_.constants;
+  std::sort(named.begin(), named.end(),
+            [](const Extent& a, const Extent& b) { return a.offset < b.offset; });
+  size_t count = 0;
+  for (const Extent& extent : named) {
+    const uint64_t end = uint64_t{extent.offset} + extent.size;
+    Extent* const last = count == 0 ? nullptr : &named[count - 1];
+    if (last == nullptr || uint64_t{last->offset} + last->size < extent.offset) {
+      named[count++] = extent;
+    } else if (uint64_t{last->offset} + last->size < end) {
+      last->size = static_cast<uint32_t>(end - last->offset);
+    }
+  }
+  named.resize(count);
+  named.shrink_to_fit();
+}
+
 bool CodeVerifier::pool_scalar(uint32_t offset, Class cls) {
   if (uint64_t{offset} + class_size(cls) > image_.pool.size()) {
     return fail_at(Refusal::kBadReference, "no constant", offset);
   }
-  uses_pool(uint64_t{offset} + class_size(cls));
+  uses_pool(offset, class_size(cls));
   if (cls == Class::kB && image_.pool[offset] > 1) {
     return fail(Refusal::kBadTyping, "a BOOL constant is neither 0 nor 1");
   }
@@ -269,7 +293,7 @@ bool CodeVerifier::pool_region(Region region, uint32_t offset, uint32_t depth) {
                                             std::to_string(context_.regions.size(region)) +
                                             " bytes" + at_text(offset));
   }
-  uses_pool(uint64_t{offset} + context_.regions.size(region));
+  uses_pool(offset, context_.regions.size(region));
   const Type& type = image_.types[region.type];
   if (type.kind == Kind::kGlobals || image_.types.is_instance(region.type) ||
       context_.facts[region.type.index].has_slots || depth > base::kMaxNesting) {
@@ -305,7 +329,7 @@ bool CodeVerifier::pool_string(uint32_t offset, Class cls, uint32_t capacity) {
     return fail(Refusal::kBadReference,
                 "no constant string of capacity " + std::to_string(capacity) + at_text(offset));
   }
-  uses_pool(uint64_t{offset} + (uint64_t{capacity} + 1) * unit);
+  uses_pool(offset, (uint64_t{capacity} + 1) * unit);
   for (uint32_t i = 0; i <= capacity; ++i) {
     const uint8_t* at = &image_.pool[offset + i * unit];
     if (at[0] == 0 && at[unit - 1] == 0) return true;

@@ -75,7 +75,7 @@ struct CodeFacts {
   uint32_t native_bytes = 0;            // argument area of native calls
   // What the answer relies on beside the POU itself, types and roles of POUs (proof.h).
   std::vector<uint32_t> parameters_of;  // POUs, each once per call
-  uint64_t pool_end = 0;                // constants that are named lie before it
+  std::vector<Extent> constants;        // bytes of the pool that are named; sorted, disjoint
   uint32_t bounds_end = 0;              // numbers of bounds are below
   uint32_t ranges_end = 0;
 };

@@ -24,7 +24,7 @@ bool same_facts(const std::shared_ptr<const CodeFacts>& x,
   const CodeFacts& b = *y;
   return a.callees == b.callees && a.written_outputs == b.written_outputs &&
          a.native_bytes == b.native_bytes && a.parameters_of == b.parameters_of &&
-         a.pool_end == b.pool_end && a.bounds_end == b.bounds_end && a.ranges_end == b.ranges_end;
+         a.constants == b.constants && a.bounds_end == b.bounds_end && a.ranges_end == b.ranges_end;
 }
 
 bool same_writer(const OutputWriter& a, const OutputWriter& b) {
@@ -112,6 +112,36 @@ TEST(Proof, OnlyThePouThatDiffersIsLookedAt) {
   image = sample::busy_image();
   image.instances[0].data += 8;  // all code names globals by their place
   EXPECT_EQ(left_out(**first, image), 0u);
+}
+
+// The linker gives the place of a constant that nobody names any more to another one: it is no
+// concern of POUs that name others, in front of it or behind.
+TEST(Proof, AConstantConcernsWhoNamesIt) {
+  const Proven first = prove(shared(encode(sample::busy_image())), nullptr);
+  ASSERT_TRUE(first.ok());
+  const Image image = sample::busy_image();
+  const auto names = [](const CodeFacts& facts, size_t byte) {
+    return std::any_of(facts.constants.begin(), facts.constants.end(), [&](const Extent& one) {
+      return one.offset <= byte && byte < one.offset + one.size;
+    });
+  };
+  uint32_t concerned = 0;
+  for (size_t byte = 0; byte < image.pool.size(); ++byte) {
+    Image other = image;
+    other.pool[byte] ^= 1;
+    const auto count = static_cast<uint32_t>(
+        std::count_if((*first)->code.begin(), (*first)->code.end(),
+                      [&](const auto& facts) { return facts != nullptr && names(*facts, byte); }));
+    EXPECT_EQ(left_out(**first, other), image.pous.size() - count) << byte;
+    concerned += count;
+  }
+  EXPECT_GT(concerned, 0u);
+  Image shorter = image;
+  shorter.pool.clear();
+  EXPECT_LT(left_out(**first, shorter), image.pous.size());
+  Image longer = image;
+  longer.pool.resize(image.pool.size() + 8, 7);
+  EXPECT_EQ(left_out(**first, longer), image.pous.size());
 }
 
 // The graph of calls goes by what the code of POUs calls and what their frames take.
