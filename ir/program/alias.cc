@@ -80,10 +80,24 @@ bool calls_may_change(const Place& place, const AliasFacts& facts) {
 
 bool is_static(const Place& place, const AliasFacts& facts) {
   if (place.base == PlaceBase::kPointee || place.base == PlaceBase::kTarget) return false;
-  return std::all_of(place.steps.begin(), place.steps.end(), [&](const Step& step) {
-    return step.kind == StepKind::kMember ||
-           (step.kind == StepKind::kIndex && index_of(step, facts).has_value());
-  });
+  TypeId at = place.base_type;
+  uint32_t dim = 0;
+  for (const Step& step : place.steps) {
+    const Type& type = facts.types()[at];
+    if (step.kind == StepKind::kMember) {
+      at = type.members[step.index].type;
+    } else if (step.kind == StepKind::kIndex) {
+      const std::optional<int64_t> index = index_of(step, facts);
+      const Dimension& bounds = type.dims[dim];
+      if (!index || *index < bounds.low || *index > bounds.high) return false;
+      if (++dim < type.dims.size()) continue;
+      at = type.base;
+      dim = 0;
+    } else {
+      return false;
+    }
+  }
+  return true;
 }
 
 std::optional<uint32_t> local_of_address(const Inst& inst, const Pou& pou) {
