@@ -14,6 +14,11 @@ bool names_instance(ir::Opcode op) {
          op == ir::Opcode::CALL_METHOD_AT;
 }
 
+bool names_constant(const ir::Unit& u) {
+  return u.base_a() == ir::Base::kConst || u.base_b() == ir::Base::kConst ||
+         u.base_c() == ir::Base::kConst;
+}
+
 // What machine code compares the type of an instance with, and the body that it runs.
 void add_kinds(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
                ir::TypeId type, std::vector<uint64_t>& out) {
@@ -44,9 +49,7 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
     const ir::Unit& u = code[i];
     const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
     const ir::Unit& x = row.extended ? code[i + 1] : u;
-    const bool has_constant = u.base_a() == ir::Base::kConst || u.base_b() == ir::Base::kConst ||
-                              u.base_c() == ir::Base::kConst;
-    const Accesses named = has_constant ? accesses_of(u) : Accesses();
+    const Accesses named = names_constant(u) ? accesses_of(u) : Accesses();
     for (const Access& access : named) {
       if (access.base != ir::Base::kConst) continue;
       uint64_t bits = 0;
@@ -106,6 +109,23 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
     }
   }
   return base::sha256({reinterpret_cast<const uint8_t*>(out.data()), out.size() * sizeof out[0]});
+}
+
+bool names_constants(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                     ConstantRange there) {
+  const std::span code = common.code_of(image, pou);
+  for (uint32_t i = 0; i < code.size(); ++i) {
+    const ir::Unit& u = code[i];
+    if (names_constant(u)) {
+      for (const Access& access : accesses_of(u)) {
+        const bool meets = access.offset < there.end &&
+                           there.begin < access.offset + size_t{ir::class_size(access.cls)};
+        if (access.base == ir::Base::kConst && meets) return true;
+      }
+    }
+    if (ir::opcode_row(u.opcode()).extended) ++i;
+  }
+  return false;
 }
 
 }  // namespace vm::native

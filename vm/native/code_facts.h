@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "vm/load/same_code.h"
 #include "vm/native/facts.h"
 
 namespace vm::native {
@@ -13,5 +14,9 @@ namespace vm::native {
 // again.
 base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
                       std::vector<uint64_t>& scratch);
+
+// Do units of the POU name constants there?
+bool names_constants(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
+                     ConstantRange there);
 
 }  // namespace vm::native

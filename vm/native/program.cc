@@ -229,9 +229,13 @@ std::vector<base::Digest> facts_of_all(const Job& job, const ImageFacts& common,
   facts.reserve(job.image.pous.size());
   const bool alike = job.running_image != nullptr && job.versions.empty() &&
                      stand_on_the_same(*job.running_image, job.image);
+  const ConstantRange changed =
+      alike ? changed_constants(*job.running_image, job.image) : ConstantRange();
   for (uint32_t number = 0; number < job.image.pous.size(); ++number) {
     const bool same = alike && number < job.running->size() && (*job.running)[number]->has_facts &&
-                      have_same_code(*job.running_image, job.image, number);
+                      have_same_code(*job.running_image, job.image, number) &&
+                      (changed.begin == changed.end ||
+                       !names_constants(job.image, common, job.image.pous[number], changed));
     facts.push_back(same ? (*job.running)[number]->facts
                          : facts_of(job.image, common, job.image.pous[number], scratch));
   }
@@ -259,8 +263,8 @@ void leave_out_rest(const Job& job, const ImageFacts& common, PouNatives& made) 
 }
 
 // Machine code of all POUs but those whose running code is still right.
-std::vector<Emitted> emit_all(const Job& job, const Shared& shared,
-                              host::Assembler& assembler, PouNatives& made) {
+std::vector<Emitted> emit_all(const Job& job, const Shared& shared, host::Assembler& assembler,
+                              PouNatives& made) {
   const size_t shared_labels = assembler.labels();
   const ImageFacts common(job.image, job.clean_bools, job.versions);
   const host::HostTarget target;

@@ -3,6 +3,7 @@
 // programs on all tiers.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,6 +11,7 @@
 #include "tests/source_path.h"
 #include "tests/unit/exec/machine.h"
 #include "tests/unit/exec/source_image.h"
+#include "vm/load/same_code.h"
 #include "vm/native/make_function.h"
 #include "vm/native/program.h"
 
@@ -211,6 +213,43 @@ PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)";
     const std::string& name = second.pous[i].name;
     const bool same = (*one)->pous()[i].machine == (*two)->pous()[i].machine;
     EXPECT_EQ(same, name == "Other" || name == "Second") << name;
+  }
+}
+
+// The place of a constant may be given to another one: whoever names it is made anew, and nobody
+// else is looked at.
+TEST(Native, AConstantThatChangesMakesWhoNamesItAnew) {
+  if (!vm::native::is_available()) GTEST_SKIP() << "no native tier on this machine";
+  const ir::Image first = build(R"(
+FUNCTION_BLOCK Small VAR_OUTPUT n : LREAL; END_VAR n := n + 1.25; END_FUNCTION_BLOCK
+FUNCTION_BLOCK Other VAR i : INT; n : LREAL; END_VAR
+  FOR i := 1 TO 3 DO n := n + 2.75; END_FOR;
+END_FUNCTION_BLOCK
+PROGRAM Main VAR s : Small; END_VAR s(); END_PROGRAM
+PROGRAM Second VAR o : Other; END_VAR o(); END_PROGRAM)");
+  for (const double constant : {1.25, 2.75}) {
+    ir::Image second = first;
+    uint8_t bytes[sizeof constant];
+    std::memcpy(bytes, &constant, sizeof bytes);
+    const auto at =
+        std::search(second.pool.begin(), second.pool.end(), bytes, bytes + sizeof bytes);
+    ASSERT_NE(at, second.pool.end());
+    at[6] ^= 1;
+    vm::Memory memory = *vm::Memory::reserve();
+    auto slots = std::make_shared<vm::CodeSlots>(1 << 20);
+    const auto before = ir::verify(ir::encode(first));
+    auto one = vm::Generation::build(*before, 0, memory.data(), slots, nullptr);
+    ASSERT_TRUE(one.ok());
+    auto two =
+        vm::Generation::build(*ir::verify(ir::encode(second)), 1, memory.data(), slots, one->get());
+    ASSERT_TRUE(two.ok());
+    EXPECT_TRUE(vm::stand_on_the_same((*one)->image(), (*two)->image()));
+    for (uint32_t i = 0; i < second.pous.size(); ++i) {
+      const std::string& name = second.pous[i].name;
+      const bool same = (*one)->pous()[i].machine == (*two)->pous()[i].machine;
+      const bool small = name == "Small" || name == "Main";  // where it is inlined
+      EXPECT_EQ(same, constant == 1.25 ? !small : name != "Other") << name << " " << constant;
+    }
   }
 }
 
