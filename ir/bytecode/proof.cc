@@ -90,7 +90,7 @@ Likeness::Likeness(const Proof* like, base::ByteSpan encoded, const Image& image
                same_instances(known, image_);
   code_ = !image_.instances.empty() && image_.instances[0].data == known.instances[0].data;
   if (!code_) return;
-  find_changed_constants();
+  changed_ = changed_constants(known.pool, image_.pool);
   const auto bounds = std::mismatch(
       known.bounds.begin(), known.bounds.end(), image_.bounds.begin(), image_.bounds.end(),
       [](const LinkedBound& a, const LinkedBound& b) { return a.from == b.from; });
@@ -145,22 +145,9 @@ bool Likeness::same_roles() const {
                     });
 }
 
-// The linker gives a place that is free to another constant, so one in the middle may change.
-void Likeness::find_changed_constants() {
-  const base::Bytes& known = like_->image.pool;
-  const base::Bytes& pool = image_.pool;
-  const size_t both = std::min(known.size(), pool.size());
-  const auto first = std::mismatch(known.begin(), known.begin() + both, pool.begin()).first;
-  changed_begin_ = static_cast<size_t>(first - known.begin());
-  changed_end_ = both;
-  while (changed_end_ > changed_begin_ && known[changed_end_ - 1] == pool[changed_end_ - 1]) {
-    --changed_end_;
-  }
-}
-
 bool Likeness::is_same_constant(const Extent& bytes) const {
-  const size_t end = size_t{bytes.offset} + bytes.size;
-  return end <= image_.pool.size() && (end <= changed_begin_ || changed_end_ <= bytes.offset);
+  const bool inside = size_t{bytes.offset} + bytes.size <= image_.pool.size();
+  return inside && !changed_.meets(bytes.offset, bytes.size);
 }
 
 // Nobody looks at the slots of a body, which has no parameters.

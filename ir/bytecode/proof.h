@@ -9,6 +9,7 @@
 
 #include "base/bytes.h"
 #include "base/result.h"
+#include "ir/bytecode/constant_range.h"
 #include "ir/bytecode/image.h"
 #include "ir/bytecode/image_beside.h"
 #include "ir/bytecode/name_index.h"
@@ -61,7 +62,6 @@ class Likeness {
   bool same_roles() const;
   bool same_code(uint32_t pou) const;
   void find_changed_parameters();
-  void find_changed_constants();
   bool is_same_constant(const Extent& bytes) const;
 
   const Proof* like_;
@@ -71,9 +71,7 @@ class Likeness {
   bool instances_ = false;
   bool code_ = false;                 // POUs can be the same
   std::vector<bool> new_parameters_;  // by POU: callers find other slots
-  // Constants: from the first byte that is another one to behind the last one.
-  size_t changed_begin_ = 0;
-  size_t changed_end_ = 0;
+  ConstantRange changed_;
   size_t same_bounds_ = 0;  // so many rows
 };
 

@@ -49,18 +49,6 @@ bool stand_on_the_same(const ir::Image& before, const ir::Image& after) {
                      });
 }
 
-ConstantRange changed_constants(const ir::Image& before, const ir::Image& after) {
-  const base::Bytes& a = before.pool;
-  const base::Bytes& b = after.pool;
-  const auto both = static_cast<ptrdiff_t>(std::min(a.size(), b.size()));
-  ConstantRange out;
-  out.begin =
-      static_cast<size_t>(std::mismatch(a.begin(), a.begin() + both, b.begin()).first - a.begin());
-  out.end = static_cast<size_t>(both);
-  while (out.end > out.begin && a[out.end - 1] == b[out.end - 1]) --out.end;
-  return out;
-}
-
 bool have_same_code(const ir::Image& before, const ir::Image& after, uint32_t number) {
   const ir::LinkedPou& a = before.pous[number];
   const ir::LinkedPou& b = after.pous[number];

@@ -13,13 +13,6 @@ bool have_same_places(const ir::Image& before, const ir::Image& after);
 // The same, and does code rely on the same tables, as far as both have them: ranges, methods that
 // override others? Then the same code does the same, but for its constants.
 bool stand_on_the_same(const ir::Image& before, const ir::Image& after);
-// Bytes of the pool that both have: from the first one that is another to behind the last one. The
-// linker gives what nobody names any more to other constants.
-struct ConstantRange {
-  size_t begin = 0;
-  size_t end = 0;
-};
-ConstantRange changed_constants(const ir::Image& before, const ir::Image& after);
 // Then: is this POU, which both have, the same code? False says nothing.
 bool have_same_code(const ir::Image& before, const ir::Image& after, uint32_t number);
 

@@ -14,7 +14,7 @@ bool names_instance(ir::Opcode op) {
          op == ir::Opcode::CALL_METHOD_AT;
 }
 
-bool names_constant(const ir::Unit& u) {
+bool has_constant(const ir::Unit& u) {
   return u.base_a() == ir::Base::kConst || u.base_b() == ir::Base::kConst ||
          u.base_c() == ir::Base::kConst;
 }
@@ -49,7 +49,7 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
     const ir::Unit& u = code[i];
     const ir::OpcodeRow& row = ir::opcode_row(u.opcode());
     const ir::Unit& x = row.extended ? code[i + 1] : u;
-    const Accesses named = names_constant(u) ? accesses_of(u) : Accesses();
+    const Accesses named = has_constant(u) ? accesses_of(u) : Accesses();
     for (const Access& access : named) {
       if (access.base != ir::Base::kConst) continue;
       uint64_t bits = 0;
@@ -112,14 +112,13 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
 }
 
 bool names_constants(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
-                     ConstantRange there) {
+                     ir::ConstantRange there) {
   const std::span code = common.code_of(image, pou);
   for (uint32_t i = 0; i < code.size(); ++i) {
     const ir::Unit& u = code[i];
-    if (names_constant(u)) {
+    if (has_constant(u)) {
       for (const Access& access : accesses_of(u)) {
-        const bool meets = access.offset < there.end &&
-                           there.begin < access.offset + size_t{ir::class_size(access.cls)};
+        const bool meets = there.meets(access.offset, ir::class_size(access.cls));
         if (access.base == ir::Base::kConst && meets) return true;
       }
     }

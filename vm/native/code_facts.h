@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "vm/load/same_code.h"
+#include "ir/bytecode/constant_range.h"
 #include "vm/native/facts.h"
 
 namespace vm::native {
@@ -17,6 +17,6 @@ base::Digest facts_of(const ir::Image& image, const ImageFacts& common, const ir
 
 // Do units of the POU name constants there?
 bool names_constants(const ir::Image& image, const ImageFacts& common, const ir::LinkedPou& pou,
-                     ConstantRange there);
+                     ir::ConstantRange there);
 
 }  // namespace vm::native

@@ -229,8 +229,8 @@ std::vector<base::Digest> facts_of_all(const Job& job, const ImageFacts& common,
   facts.reserve(job.image.pous.size());
   const bool alike = job.running_image != nullptr && job.versions.empty() &&
                      stand_on_the_same(*job.running_image, job.image);
-  const ConstantRange changed =
-      alike ? changed_constants(*job.running_image, job.image) : ConstantRange();
+  ir::ConstantRange changed;
+  if (alike) changed = ir::changed_constants(job.running_image->pool, job.image.pool);
   for (uint32_t number = 0; number < job.image.pous.size(); ++number) {
     const bool same = alike && number < job.running->size() && (*job.running)[number]->has_facts &&
                       have_same_code(*job.running_image, job.image, number) &&

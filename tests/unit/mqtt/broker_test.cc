@@ -97,6 +97,15 @@ TEST_F(Brokers, F03_MessagesThatTheBrokerDoesNotTakeAreBounded) {
   EXPECT_TRUE(broker_->publish("status", payload, true).ok());
 }
 
+TEST_F(Brokers, F03_AReceiptForWhatNobodyPublishedCountsForNothing) {
+  for (uint16_t number = 1; number <= 1000; ++number) false_.acknowledge(number);
+  false_.send_and_hear();
+  for (size_t i = 0; i < mqtt::kMostLeaving; ++i) {
+    ASSERT_TRUE(broker_->publish("status", base::Bytes(1, 6), true).ok()) << i;
+  }
+  EXPECT_FALSE(broker_->publish("status", base::Bytes(1, 6), true).ok());
+}
+
 TEST_F(Brokers, F03_BytesThatTheBrokerDoesNotTakeAreBounded) {
   const base::Bytes largest(mqtt::kMostPayload, 5);
   const size_t most = mqtt::kMostLeavingBytes / mqtt::kMostPayload;
