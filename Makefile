@@ -9,7 +9,7 @@
 #   make bench    ST against C, and the compiler; writes docs/performance.md
 #   make bench-large   the compiler on a million lines
 #   make bench-pause   how long online changes stop the tasks; writes docs/pause.md
-#   make asan     all tests under AddressSanitizer and UBSan (also: ubsan)
+#   make asan     all tests under AddressSanitizer and UBSan (also: ubsan, and asan-clang by clang 16)
 #   make asan-memory   those of them that touch memory most, as for every commit
 #   make tsan     what has threads under ThreadSanitizer
 #   make fuzz     a million inputs for each fuzz target under sanitizers; FUZZ='image|store' for some
@@ -32,7 +32,7 @@ JOBS := $(shell nproc)
 # Some tests wait for what other processes do, and a core is free meanwhile.
 TEST_JOBS := $(shell expr $(JOBS) + 1)
 
-.PHONY: install deb archives all build setup demo demo-fleet test test-ansible test-arm64 test-minimal minimal hard clang bench bench-large bench-pause format asan asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
+.PHONY: install deb archives all build setup demo demo-fleet test test-ansible test-arm64 minimal minimal-scripts hard clang bench bench-large bench-pause format asan asan-clang asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
 
 all: build
 
@@ -70,6 +70,12 @@ minimal: setup
 	@cmake --build build/minimal -j $(JOBS)
 	@ctest --test-dir build/minimal --output-on-failure -j $(TEST_JOBS) $(if $(TESTS),-R '$(TESTS)') $(if $(EXCEPT),-E '$(EXCEPT)')
 
+# Of these those that are scripts, and no more is built than they run.
+minimal-scripts: setup
+	@cmake --preset minimal >/dev/null
+	@cmake --build build/minimal -j $(JOBS) --target for_scripts
+	@ctest --test-dir build/minimal --output-on-failure -j $(TEST_JOBS) -R '^(cli|meta)_' $(if $(EXCEPT),-E '$(EXCEPT)')
+
 # Every invariant is checked, those of hot loops too (base/check.h).
 hard: setup
 	@cmake --preset hard >/dev/null
@@ -82,7 +88,8 @@ clang: setup
 	@cmake --build build/clang -j $(JOBS)
 	@ctest --test-dir build/clang --output-on-failure -j $(TEST_JOBS)
 
-asan ubsan: setup
+asan asan-clang ubsan: setup
+	@[ $@ != asan-clang ] || scripts/setup.sh clang-16 libclang-rt-16-dev
 	@cmake --preset $@ >/dev/null
 	@cmake --build build/$@ -j $(JOBS)
 	@ctest --test-dir build/$@ --output-on-failure -j $(TEST_JOBS)

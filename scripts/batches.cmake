@@ -2,6 +2,10 @@
 # unnamed namespaces are unique in their folder, and in all of frontend/sema. 1: each source alone,
 # for work on one of them.
 set(STC_BATCH 16 CACHE STRING "Sources that are compiled together")
+if(STC_BATCH GREATER 1 AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  # Names of one source in those of another; without batches it is asked for.
+  add_compile_options(-Wno-shadow)
+endif()
 
 # These have the same names in each source of the folder, options of their own, or texts that most
 # programs do without.
