@@ -1,6 +1,7 @@
 #include "tests/unit/online_change/plant.h"
 
 #include <cstdlib>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
@@ -48,8 +49,7 @@ online_change::Strategy default_strategy() {
                                                            : online_change::Strategy::kInPlace;
 }
 
-ir::VerifiedImage link_sources(const std::string& source, const linker::Options& options) {
-  Compiled compiled = compile(source);
+ir::VerifiedImage link_objects(const Compiled& compiled, const linker::Options& options) {
   base::Result<ir::Image> image = linker::link(compiled.program, compiled.objects, options);
   if (!image.ok()) base::check(false, base::to_string(image.error()).c_str());
   base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(*image));
@@ -66,18 +66,25 @@ Plant::Plant(const std::string& source, const Settings& settings)
   vm::ControllerOptions running = settings.options;
   // Suspended as soon as a release is due.
   if (settings.ns_per_safe_point != 0) running.fuel_slice = 1;
-  auto controller = vm::Controller::start(link_sources(source, options), running, clock_, devices_);
+  auto controller =
+      vm::Controller::start(link_objects(compiled(source), options), running, clock_, devices_);
   base::check(controller.ok(), "the controller starts");
   controller_ = std::move(*controller);
   change_ = std::make_unique<online_change::Change>(*controller_);
 }
 
-ir::VerifiedImage Plant::link(const std::string& source, bool move_all) const {
+ir::VerifiedImage Plant::link(const std::string& source, bool move_all) {
   linker::Options options;
   options.slack = slack_;
   options.base = &controller_->image();
   options.move_all = move_all;
-  return link_sources(source, options);
+  return link_objects(compiled(source), options);
+}
+
+const Compiled& Plant::compiled(const std::string& source) {
+  if (known_[0].source != source) std::swap(known_[0], known_[1]);
+  if (known_[0].source != source || !known_[0].compiled) known_[0] = {source, compile(source)};
+  return *known_[0].compiled;
 }
 
 void Plant::run(int scans) {

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,8 +79,15 @@ class Plant {
   uint32_t id_of(const std::string& path) const;  // of a live instance; 0 when there is none
 
  private:
-  ir::VerifiedImage link(const std::string& source, bool move_all) const;
+  ir::VerifiedImage link(const std::string& source, bool move_all);
+  const Compiled& compiled(const std::string& source);
 
+  // The last two texts: thousands of edits go back and forth between them.
+  struct Known {
+    std::string source;
+    std::optional<Compiled> compiled;
+  };
+  std::array<Known, 2> known_;
   linker::Slack slack_;
   online_change::Strategy strategy_;
   vm::VirtualClock clock_;
