@@ -107,6 +107,14 @@ bool text_of(Node part, std::string& out) {
   return true;
 }
 
+// What people have ticked: one of the properties of an object, each of which has a GUID as its key.
+bool is_excluded(Node meta) {
+  const Node property = member(meta, "Properties").find_node([](Node node) {
+    return xml::attribute(node, "Name") == "ExcludeFromBuild";
+  });
+  return xml::boolean(base::fold_name(xml::trimmed(property.child_value()))).value_or(false);
+}
+
 struct Entry {
   Node node;
   Node object;
@@ -115,7 +123,8 @@ struct Entry {
   const Row* row = &kUnknownRow;
   std::vector<uint32_t> children;  // below folders, too
   bool written = false;
-  bool orphan = false;  // its owner is not there, which has been said
+  bool orphan = false;    // its owner is not there, which has been said
+  bool excluded = false;  // from the build, or what it stands in is
 };
 
 class Reader {
@@ -126,6 +135,7 @@ class Reader {
  private:
   void find_entries(Node root);
   void add(Node meta, Node object, Node node);
+  void find_excluded();
   void find_children();
   uint32_t owner_of(uint32_t entry) const;
   void write(uint32_t entry, Node parent, bool has_bodies);
@@ -147,6 +157,7 @@ void Reader::add(Node meta, Node object, Node node) {
   entry.object = object;
   entry.name = value(meta, "Name");
   entry.parent = guid(meta, "ParentGuid");
+  entry.excluded = is_excluded(meta);
   const std::string type = guid(meta, "TypeGuid");
   for (const Row& row : kRows) {
     if (type == row.guid) entry.row = &row;
@@ -189,11 +200,26 @@ uint32_t Reader::owner_of(uint32_t entry) const {
   return kNone;
 }
 
+// Of what is excluded, so is all that stands in it.
+void Reader::find_excluded() {
+  for (Entry& entry : entries_) {
+    const Entry* outer = &entry;
+    for (uint32_t steps = 0; steps < base::kMaxXmlDepth && !entry.excluded; ++steps) {
+      const auto found = by_guid_.find(outer->parent);
+      if (found == by_guid_.end()) break;
+      outer = &entries_[found->second];
+      entry.excluded = outer->excluded;
+    }
+    if (!entry.excluded) continue;
+    report_.add(Code::kXmlLeftOut, entry.node, "`" + entry.name + "` is excluded from the build");
+  }
+}
+
 void Reader::find_children() {
   for (uint32_t i = 0; i < entries_.size(); ++i) {
     const Kind kind = entries_[i].row->kind;
     const bool member = kind >= Kind::kMethod && kind <= Kind::kTransition;
-    if (!member) continue;
+    if (!member || entries_[i].excluded) continue;
     const uint32_t owner = owner_of(i);
     entries_[i].orphan = owner == kNone;
     if (owner == kNone) {
@@ -264,10 +290,12 @@ void Reader::left_out(const Entry& entry) {
 
 void Reader::run(Node root) {
   find_entries(root);
+  find_excluded();
   find_children();
   Node all = out_.document.append_child("TcPlcObject");
   out_.origins.emplace(all.internal_object(), root);
   for (uint32_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].excluded) continue;
     const Kind kind = entries_[i].row->kind;
     const bool top = kind == Kind::kPou || kind == Kind::kInterface || kind == Kind::kType ||
                      kind == Kind::kGlobals;
@@ -278,7 +306,8 @@ void Reader::run(Node root) {
     }
   }
   for (const Entry& entry : entries_) {
-    if (entry.written || entry.row->kind >= Kind::kFolder || entry.orphan) continue;
+    if (entry.written || entry.row->kind >= Kind::kFolder) continue;
+    if (entry.orphan || entry.excluded) continue;
     report_.add(Code::kXmlMissing, entry.node,
                 "`" + entry.name + "` belongs to an object that does not come in");
   }

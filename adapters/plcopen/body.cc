@@ -70,10 +70,33 @@ std::string language_text(Node body, Node owner, const std::string& name, Report
   return out;
 }
 
+namespace {
+
+// LADDER or FBD, where `text` is a drawing of its own.
+std::string_view drawing_word(std::string_view text) {
+  for (const std::string_view word : {"LADDER", "FBD"}) {
+    const std::string end = "END_" + std::string(word) + "\n";
+    if (text.starts_with(std::string(word) + "\n") && text.ends_with(end)) return word;
+  }
+  return {};
+}
+
+}  // namespace
+
+// Several bodies are worksheets of one: their networks follow each other.
 std::string body_text(Node owner, const std::string& name, Reporter& report) {
   std::string out;
   for (Node body : xml::children(owner, "body")) {
-    out += language_text(body, owner, name, report);
+    std::string sheet = language_text(body, owner, name, report);
+    const std::string_view before = drawing_word(out);
+    const std::string_view word = drawing_word(sheet);
+    if (before == word && !word.empty()) {
+      out.resize(out.size() - word.size() - std::string_view("END_\n").size());
+      sheet.erase(0, word.size() + 1);
+    } else if ((!before.empty() || !word.empty()) && !out.empty() && !sheet.empty()) {
+      sheet = failed(body, "the worksheets of " + name + " are in two languages", report);
+    }
+    out += sheet;
   }
   return out;
 }

@@ -1,6 +1,7 @@
 // <SFC> -> steps, transitions and actions as text. Elements name what is above them; what is
 // between transitions and steps (divergences, convergences, jumps) is followed here and then gone.
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -276,18 +277,44 @@ std::string Chart::transition_text(const ChartElement& transition) {
   return out + late_condition(transition, from) + "END_TRANSITION\n";
 }
 
+// The element that a transition leaves, through alternatives.
+const ChartElement& Chart::left_by(const ChartElement& transition) const {
+  const ChartElement* at = &transition;
+  for (size_t steps = 0; steps <= elements_.size() && !at->above.empty(); ++steps) {
+    at = &elements_[at->above.front()];
+    if (!xml::is(at->node, "selectionDivergence")) break;
+  }
+  return *at;
+}
+
+// Of alternatives without a priority the first one on the left goes, however high it stands.
+std::vector<const ChartElement*> Chart::transitions() const {
+  using Place = std::array<double, 4>;
+  std::vector<std::pair<Place, const ChartElement*>> found;
+  for (const ChartElement& element : elements_) {
+    if (!xml::is(element.node, "transition")) continue;
+    const Node left = left_by(element).node;
+    found.push_back(
+        {{place(left, "y"), place(left, "x"), place(element.node, "x"), place(element.node, "y")},
+         &element});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const ChartElement*> out;
+  for (const auto& [place, element] : found) out.push_back(element);
+  return out;
+}
+
 std::string Chart::text() {
   collect();
-  std::string steps, transitions, actions;
+  std::string steps, conditions, actions;
   for (const ChartElement& element : elements_) {
-    if (xml::is(element.node, "step")) {
-      steps += step_text(element);
-      for (const ChartAction& action : element.actions) actions += action.body;
-    } else if (xml::is(element.node, "transition")) {
-      transitions += transition_text(element);
-    }
+    if (!xml::is(element.node, "step")) continue;
+    steps += step_text(element);
+    for (const ChartAction& action : element.actions) actions += action.body;
   }
-  return comments_ + steps + transitions + actions;
+  for (const ChartElement* element : transitions()) conditions += transition_text(*element);
+  return comments_ + steps + conditions + actions;
 }
 
 std::string chart_text(Node sfc, Node pou, Reporter& report) {

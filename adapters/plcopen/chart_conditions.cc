@@ -29,7 +29,9 @@ std::string Chart::plain_condition(const ChartElement& transition) {
                ? condition_text(xml::child(named->second, "body"), name, report_)
                : " := " + name + ";\n";
   }
-  if (Node point = xml::child(condition, "connectionPointIn")) {
+  Node point = xml::child(condition, "connectionPointIn");
+  if (xml::child(condition, "connection")) point = condition;  // TC6 1.0
+  if (point) {
     std::vector<network::Link> links = drawing_.links_of(point);
     std::string out =
         drawing_.failed() ? "" : links_text(drawing_.elements(), links, transition.node, report_);

@@ -16,6 +16,19 @@ xml::ChartAttributes chart_attributes(Node element, Reporter* report) {
   return out;
 }
 
+bool is_chart_of_codesys(Node pou) {
+  for (Node body : xml::children(pou, "body")) {
+    for (Node chart : xml::children(body, "SFC")) {
+      for (Node step : xml::children(chart, "step")) {
+        for (Node data : vendor_parts(step)) {
+          if (is_chart_data(data)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 xml::OwnActions own_actions(Node pou) {
   xml::OwnActions out;
   for (Node body : xml::children(pou, "body")) {

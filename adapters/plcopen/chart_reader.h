@@ -51,6 +51,8 @@ class Chart {
   std::vector<std::string> steps_beside(const ChartElement& transition, bool up);
   void push_neighbours(const ChartElement& element, bool up, bool joined, std::vector<Way>& todo);
   std::string jump_target(const ChartElement& jump);
+  const ChartElement& left_by(const ChartElement& transition) const;
+  std::vector<const ChartElement*> transitions() const;  // as they are asked
   std::string step_text(const ChartElement& step);
   std::string transition_text(const ChartElement& transition);
   std::string condition(const ChartElement& transition);

@@ -1,4 +1,6 @@
 // Configurations, resources, tasks and instances; the project as a whole.
+#include <algorithm>
+
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/reader.h"
@@ -15,9 +17,29 @@ std::string add_declaration(Node element, std::string_view name, std::string tex
 
 namespace {
 
-// xsd:duration (PT0.02S) or a literal of the standard (T#20ms, t#1s, 20ms). Empty: neither.
+// `01:30:00.25`, hours first, as in TC6 1.0. Empty: it is none.
+std::string clock_text(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789";
+  std::string out = "T#";
+  for (const char unit : {'h', 'm', 's'}) {
+    const size_t end = unit == 's' ? text.size() : std::min(text.find(':'), text.size());
+    const std::string_view number = text.substr(0, end);
+    const size_t point = std::min(number.find('.'), number.size());
+    const bool whole = number.substr(0, point).find_first_not_of(kDigits) == std::string_view::npos;
+    const size_t behind = number.find_first_not_of(kDigits, std::min(point + 1, number.size()));
+    if (point == 0 || !whole || behind != std::string_view::npos) return {};
+    if (unit != 's' && (point != end || end == text.size())) return {};
+    out += std::string(number) + unit;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+// xsd:duration (PT0.02S), a time of a clock or a literal of the standard (T#20ms, t#1s, 20ms).
+// Empty: none of them.
 std::string interval_text(std::string_view text) {
   text = xml::trimmed(text);
+  if (const std::string clock = clock_text(text); !clock.empty()) return clock;
   const size_t mark = text.find('#');
   const std::string_view allowed = "0123456789._dhmsunDHMSUN";
   std::string_view amount = mark == std::string_view::npos ? text : text.substr(mark + 1);
@@ -44,6 +66,19 @@ std::string interval_text(std::string_view text) {
   return out.size() > 2 && number.empty() ? out : std::string();
 }
 
+// CODESYS has tasks that wait for something. Others run by their interval, or in every scan.
+void check_kind(Node task, bool has_single, Reporter& report) {
+  for (Node data : vendor_parts(task)) {
+    if (!is_vendor(data, "tasksettings") || has_single) continue;
+    const std::string kind(xml::attribute(xml::child(data, "TaskSettings"), "KindOfTask"));
+    if (kind.empty() || kind == "Cyclic" || kind == "Freewheeling") continue;
+    report.add(Code::kXmlBadValue, task,
+               "the task `" + std::string(xml::attribute(task, "name")) + "` is of kind " + kind +
+                   ": when it runs does not come in",
+               "write it as TASK name(SINGLE := variable, PRIORITY := ...) in a CONFIGURATION");
+  }
+}
+
 std::string task_text(Node task, Reporter& report) {
   const std::string name(report.required_name(task));
   if (name.empty()) return {};
@@ -63,6 +98,7 @@ std::string task_text(Node task, Reporter& report) {
   }
   std::string_view single = xml::trimmed(xml::attribute(task, "single"));
   if (!single.empty() && !xml::boolean(single)) add("SINGLE := " + std::string(single));
+  check_kind(task, !single.empty(), report);
   std::string_view priority = xml::trimmed(xml::attribute(task, "priority"));
   if (!priority.empty()) {
     if (priority.find_first_not_of("0123456789") != std::string_view::npos) {
@@ -79,6 +115,7 @@ std::string instance_text(Node node, const std::string& task, Reporter& report) 
   const std::string name(report.required_name(node));
   if (name.empty()) return {};
   std::string type(xml::trimmed(xml::attribute(node, "typeName")));
+  if (type.empty()) type = xml::trimmed(xml::attribute(node, "type"));  // TC6 1.0
   if (type.empty()) type = name;  // CODESYS: the program itself
   return vendor_data(node, report).attributes + "PROGRAM " + name +
          (task.empty() ? "" : " WITH " + task) + " : " + type + ";\n";
@@ -86,7 +123,7 @@ std::string instance_text(Node node, const std::string& task, Reporter& report) 
 
 void add_named_lists(Node parent, Reporter& report) {
   for (Node list : xml::children(parent, "globalVars")) {
-    if (!is_named_list(list)) continue;
+    if (!is_named_list(list) || is_excluded(list, report)) continue;
     const std::string name(report.required_name(list));
     if (name.empty()) continue;
     std::string text = variable_list(list, report);
@@ -122,6 +159,12 @@ std::string resource_text(Node resource, Reporter& report) {
          "END_RESOURCE\n";
 }
 
+void import_type(Node type, Reporter& report) {
+  if (is_excluded(type, report)) return;
+  std::string text = xml::is(type, "union") ? union_type(type, report) : data_type(type, report);
+  if (!text.empty()) add_declaration(type, xml::attribute(type, "name"), text, report);
+}
+
 // What CODESYS keeps in addData: POUs, types, lists and whole applications.
 void import_part(Node data, Reporter& report) {
   bool taken = false;
@@ -129,9 +172,8 @@ void import_part(Node data, Reporter& report) {
     taken = true;
     if (xml::is(node, "pou")) {
       import_pou(node, report);
-    } else if (xml::is(node, "dataType")) {
-      std::string text = data_type(node, report);
-      if (!text.empty()) add_declaration(node, xml::attribute(node, "name"), text, report);
+    } else if (xml::is(node, "dataType") || xml::is(node, "union")) {
+      import_type(node, report);
     } else if (xml::is(node, "Interface") || xml::is(node, "interface")) {
       import_interface(node, report);
     } else if (xml::is(node, "resource")) {
@@ -195,8 +237,7 @@ namespace {
 // <types>, and what vendors add beside it.
 void import_types(Node owner, Reporter& report) {
   for (Node type : xml::children(xml::find(owner, {"types", "dataTypes"}), "dataType")) {
-    std::string text = data_type(type, report);
-    if (!text.empty()) add_declaration(type, xml::attribute(type, "name"), text, report);
+    import_type(type, report);
   }
   for (Node pou : xml::children(xml::find(owner, {"types", "pous"}), "pou")) {
     import_pou(pou, report);

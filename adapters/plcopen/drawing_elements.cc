@@ -268,6 +268,8 @@ void Drawing::add_block(Node node, Kind kind) {
   for (Node data : xml::children(xml::child(node, "addData"), "data")) {
     const std::string wire(xml::trimmed(xml::text_of(data)));
     if (is_vendor(data, kWireData) && xml::is_name(wire)) element.wire.text = wire;
+    // CODESYS; a program is its own instance.
+    if (is_vendor(data, "fbdcalltype") && wire == "program") element.operand = element.type;
   }
   const uint32_t number = push(std::move(element));
   Raw raw;

@@ -1,4 +1,6 @@
 // POUs and interfaces, with their members inside of them.
+#include <algorithm>
+
 #include "adapters/plcopen/reader.h"
 #include "base/name_case.h"
 
@@ -39,7 +41,7 @@ std::string head(Node owner, const char* word, const std::string& name, const Ve
 
 std::string method(Node node, Reporter& report) {
   const std::string name(report.required_name(node));
-  if (name.empty()) return {};
+  if (name.empty() || is_excluded(node, report)) return {};
   Vendor vendor = vendor_data(node, report);
   return documentation(node, "") + head(node, "METHOD", name, vendor, report) +
          xml::indented(body_text(node, "method " + name, report), kIndent) + "END_METHOD\n";
@@ -56,7 +58,7 @@ std::string accessor(Node node, const char* word, const std::string& name, Repor
 
 std::string property(Node node, Reporter& report) {
   const std::string name(report.required_name(node));
-  if (name.empty()) return {};
+  if (name.empty() || is_excluded(node, report)) return {};
   Vendor vendor = vendor_data(node, report);
   std::string out = documentation(node, "");
   if (has_head(vendor.declaration, "PROPERTY")) {
@@ -75,7 +77,7 @@ std::string property(Node node, Reporter& report) {
 
 std::string action(Node node, const xml::OwnActions& of_steps, Reporter& report) {
   const std::string name(report.required_name(node));
-  if (name.empty()) return {};
+  if (name.empty() || is_excluded(node, report)) return {};
   std::string attributes = vendor_data(node, report).attributes;
   const std::string of_step = of_steps.head(name);
   if (attributes.find(of_step) == std::string::npos) attributes += of_step;
@@ -91,12 +93,13 @@ std::string members(const Vendor& vendor, Node pou, Reporter& report) {
   for (Node node : vendor.methods) add(method(node, report));
   for (Node node : vendor.properties) add(property(node, report));
   const xml::OwnActions of_steps = own_actions(pou);
-  for (const bool entry : {true, false}) {  // in the order in which they run in a scan
-    for (Node node : xml::children(xml::child(pou, "actions"), "action")) {
-      if (of_steps.is_entry(xml::attribute(node, "name")) != entry) continue;
-      add(action(node, of_steps, report));
-    }
+  std::vector<Node> actions = xml::children(xml::child(pou, "actions"), "action");
+  if (is_chart_of_codesys(pou)) {
+    std::stable_sort(actions.begin(), actions.end(), [&](Node a, Node b) {
+      return of_steps.before(xml::attribute(a, "name"), xml::attribute(b, "name"));
+    });
   }
+  for (Node node : actions) add(action(node, of_steps, report));
   return out;
 }
 
@@ -128,6 +131,7 @@ const PouForm* form_of(Node pou, Reporter& report) {
 }  // namespace
 
 void import_pou(Node pou, Reporter& report) {
+  if (is_excluded(pou, report)) return;
   const std::string name(report.required_name(pou));
   report.set_pou(name);
   const PouForm* form = name.empty() ? nullptr : form_of(pou, report);
@@ -145,6 +149,7 @@ void import_pou(Node pou, Reporter& report) {
 }
 
 void import_interface(Node interface, Reporter& report) {
+  if (is_excluded(interface, report)) return;
   const std::string name(report.required_name(interface));
   report.set_pou(name);
   if (!name.empty()) {

@@ -29,6 +29,7 @@ std::string add_declaration(Node element, std::string_view name, std::string tex
 // --- types.cc
 std::string type_text(Node type, Reporter& report);       // <type>, <baseType>: ARRAY[1..5] OF INT
 std::string data_type(Node data_type, Reporter& report);  // <dataType>: TYPE ... END_TYPE
+std::string union_type(Node node, Reporter& report);      // <union> of CODESYS, likewise
 
 // --- values.cc
 std::string value_text(Node value, Reporter& report);  // <initialValue>: [1, 2(0)]
@@ -54,6 +55,8 @@ struct Vendor {
   std::vector<Node> properties;
 };
 Vendor vendor_data(Node owner, Reporter& report);
+// What people have excluded from the build does not come in: a note.
+bool is_excluded(Node owner, Reporter& report);
 // A <data> that nothing takes: a note when it is known to be of an editor, else a warning.
 void report_data(Node data, Reporter& report);
 std::vector<Node> vendor_parts(Node owner);        // its <data>, with those of its <interface>
@@ -88,6 +91,8 @@ std::string chart_text(Node sfc, Node pou, Reporter& report);
 xml::ChartAttributes chart_attributes(Node element, Reporter* report);
 // Of all steps of the charts in `pou`.
 xml::OwnActions own_actions(Node pou);
+// Does one of the steps have attributes of CODESYS?
+bool is_chart_of_codesys(Node pou);
 bool is_chart_data(Node data);
 
 // --- kept.cc

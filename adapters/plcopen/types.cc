@@ -78,8 +78,9 @@ std::string enum_text(Node node, Reporter& report) {
   return "(" + values + ")" + base;
 }
 
-std::string struct_text(Node node, Reporter& report) {
-  std::string out = "STRUCT\n";
+// `word`: STRUCT or UNION.
+std::string members_text(Node node, const std::string& word, Reporter& report) {
+  std::string out = word + "\n";
   for (Node member : xml::children(node, "variable")) {
     std::string address(xml::attribute(member, "address"));
     std::string name(report.required_name(member));
@@ -93,7 +94,7 @@ std::string struct_text(Node node, Reporter& report) {
     std::string note = documentation(member, " ");
     out += note.empty() ? "\n" : note;
   }
-  return out + "END_STRUCT";
+  return out + "END_" + word;
 }
 
 }  // namespace
@@ -115,12 +116,22 @@ std::string type_text(Node type, Reporter& report) {
   if (kind == "derived") return simple(node, report.required(node, "name"), report);
   if (kind == "array") return array_text(node, report);
   if (kind == "enum") return enum_text(node, report);
-  if (kind == "struct") return struct_text(node, report);
+  if (kind == "struct") return members_text(node, "STRUCT", report);
   if (kind == "subrangeSigned" || kind == "subrangeUnsigned") return subrange_text(node, report);
   if (kind == "pointer") return "POINTER TO " + type_text(xml::child(node, "baseType"), report);
   if (kind == "reference") return "REFERENCE TO " + type_text(xml::child(node, "baseType"), report);
   report.add(Code::kXmlBadValue, node, xml::shown(node) + " is no type");
   return {};
+}
+
+std::string union_type(Node node, Reporter& report) {
+  const std::string name(report.required_name(node));
+  if (name.empty()) return {};
+  const Vendor vendor = vendor_data(node, report);
+  const std::string note = documentation(node, "");
+  if (!vendor.declaration.empty()) return note + vendor.declaration;
+  return note + vendor.attributes + "TYPE " + name + " : " + members_text(node, "UNION", report) +
+         ";\nEND_TYPE\n";
 }
 
 std::string data_type(Node node, Reporter& report) {

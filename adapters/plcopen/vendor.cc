@@ -86,6 +86,18 @@ std::vector<Node> vendor_parts(Node owner) {
   return out;
 }
 
+bool is_excluded(Node owner, Reporter& report) {
+  for (Node data : vendor_parts(owner)) {
+    if (!is_vendor(data, "buildproperties")) continue;
+    const Node said = data.find_node([](Node node) { return xml::is(node, "ExcludeFromBuild"); });
+    if (!xml::boolean(xml::trimmed(xml::text_of(said))).value_or(false)) continue;
+    report.add(Code::kXmlLeftOut, owner,
+               "`" + std::string(xml::attribute(owner, "name")) + "` is excluded from the build");
+    return true;
+  }
+  return false;
+}
+
 void report_data(Node data, Reporter& report) {
   if (is_source_data(data) || is_chart_data(data)) return;
   const std::string name(xml::attribute(data, "name"));

@@ -199,6 +199,9 @@ Wire NetworkReader::assign(const Item& item, bool leads_on) {
   const bool is_power = ladder_ && bools && carries_power(from);
   Wire wire = is_power ? powered(from) : value(from);
   if (targets.size() > 1 || leads_on) wire = read_once(std::move(wire), item.node);
+  if (wire.from.empty() && (own & (kJump | kReturn)) != 0) {
+    fail(item.node, "nothing is connected to a jump or RETURN", "connect a condition in TwinCAT");
+  }
   if (wire.from.empty() && !failed_) {
     report_.add(Code::kXmlLeftOut, item.node, "nothing is connected to a coil or output");
     return {};

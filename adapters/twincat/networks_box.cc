@@ -102,6 +102,7 @@ Wire NetworkReader::box(const Item& item, bool leads_on) {
          "give its name in TwinCAT");
   }
   if (instance) block.operand = operand(called, "an instance");
+  if (how == "Program") block.operand = block.type;  // it is its own instance
   if (!xml::is_dotted_name(block.type.text)) {
     fail(item.node, "a box is of type `" + block.type.text + "`, which is no name");
   }

@@ -64,11 +64,23 @@ std::string ObjectWriter::declaration(Node node) {
   return out.empty() ? out : out + "\n";
 }
 
+// Behind a comment with those inside of it.
+size_t behind_comment(std::string_view text, size_t at) {
+  size_t depth = 0;
+  do {
+    const std::string_view mark = text.substr(at, 2);
+    depth += mark == "(*" ? 1 : 0;
+    depth -= mark == "*)" ? 1 : 0;
+    at += mark == "(*" || mark == "*)" ? 2 : 1;
+  } while (depth != 0 && at < text.size());
+  return at;
+}
+
 // Words in front of the first that says what is declared: attributes, comments, FINAL ...
 std::string ObjectWriter::end_word(Node node, std::string_view text) {
   for (size_t at = 0; at < text.size();) {
     if (text.substr(at).starts_with("(*")) {
-      at = std::min(text.find("*)", at + 2), text.size() - 1) + 1;
+      at = behind_comment(text, at);
     } else if (text.substr(at).starts_with("/*")) {
       at = std::min(text.find("*/", at + 2), text.size() - 1) + 1;
     } else if (text.substr(at).starts_with("//")) {
@@ -163,13 +175,16 @@ std::string ObjectWriter::member(Node node, const char* end) {
 }
 
 void ObjectWriter::members(Node parent, std::string& out) {
-  const xml::OwnActions of_steps =
-      own_actions(xml::child(xml::child(parent, "Implementation"), "SFC"));
+  const Node chart = xml::child(xml::child(parent, "Implementation"), "SFC");
+  const xml::OwnActions of_steps = own_actions(chart);
   std::vector<Node> nodes = xml::children(parent);
-  // In the order in which they run in a scan.
-  std::stable_partition(nodes.begin(), nodes.end(), [&](Node node) {
-    return xml::is(node, "Action") && of_steps.is_entry(xml::attribute(node, "Name"));
-  });
+  if (chart) {
+    const auto actions = std::stable_partition(nodes.begin(), nodes.end(),
+                                               [](Node node) { return !xml::is(node, "Action"); });
+    std::stable_sort(actions, nodes.end(), [&](Node a, Node b) {
+      return of_steps.before(xml::attribute(a, "Name"), xml::attribute(b, "Name"));
+    });
+  }
   for (Node node : nodes) {
     std::string text;
     if (xml::is(node, "Method")) {

@@ -1,6 +1,7 @@
 #include "adapters/xml/chart_attributes.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/name_case.h"
 
@@ -87,23 +88,20 @@ std::string ChartAttributes::after_least_time(const std::string& condition, cons
 }
 
 void OwnActions::add(const ChartAttributes& step) {
-  if (!step[ChartAttribute::kMain].empty()) {
-    main.insert(base::fold_name(step[ChartAttribute::kMain]));
-  }
-  if (!step[ChartAttribute::kEntry].empty()) {
-    entry.insert(base::fold_name(step[ChartAttribute::kEntry]));
-  }
-  if (!step[ChartAttribute::kExit].empty()) {
-    exit.insert(base::fold_name(step[ChartAttribute::kExit]));
-  }
+  const auto number = [&](ChartAttribute attribute, Numbered& actions) {
+    if (step[attribute].empty()) return;
+    actions.emplace(base::fold_name(step[attribute]), actions.size());
+  };
+  number(ChartAttribute::kMain, main);
+  number(ChartAttribute::kEntry, entry);
+  number(ChartAttribute::kExit, exit);
 }
 
 void OwnActions::add_usual(std::string_view name) { usual.insert(base::fold_name(name)); }
 
 std::string OwnActions::conflict() const {
-  const auto both = [](const std::set<std::string>& a, const std::set<std::string>& b,
-                       const char* what) {
-    for (const std::string& name : a) {
+  const auto both = [](const Numbered& a, const auto& b, const char* what) {
+    for (const auto& [name, number] : a) {
       if (b.count(name) != 0) return "the action `" + name + "` is that of " + what;
     }
     return std::string();
@@ -117,11 +115,24 @@ std::string OwnActions::conflict() const {
 }
 
 std::string OwnActions::head(std::string_view name) const {
-  return main.count(base::fold_name(name)) != 0 ? "{attribute 'no_final_scan'}\n" : "";
+  const std::string own = base::fold_name(name);
+  const bool of_step = main.count(own) != 0 ||
+                       ((entry.count(own) != 0 || exit.count(own) != 0) && usual.count(own) == 0);
+  return of_step ? "{attribute 'no_final_scan'}\n" : "";
 }
 
-bool OwnActions::is_entry(std::string_view name) const {
-  return entry.count(base::fold_name(name)) != 0;
+bool OwnActions::before(std::string_view a, std::string_view b) const {
+  const auto place = [&](std::string_view name) {
+    std::string own = base::fold_name(name);
+    size_t group = 0;
+    for (const Numbered* actions : {&exit, &entry, &main}) {
+      const auto found = actions->find(own);
+      if (found != actions->end()) return std::tuple(group, found->second, std::string());
+      ++group;
+    }
+    return std::tuple(group, size_t{0}, std::move(own));
+  };
+  return place(a) < place(b);
 }
 
 }  // namespace xml

@@ -45,12 +45,14 @@ class ChartAttributes {
   std::map<ChartAttribute, std::string> values_;
 };
 
-// The actions of steps themselves, by folded names: those that run while a step is active have no
-// final scan; those of the entry run first in a scan.
+// The actions of steps themselves, by folded names, with their numbers in the order of the chart.
+// In a scan those of exits run first, then those of entries, then those of active steps, each in
+// the order of the chart, and then all other actions in the order of their names.
 struct OwnActions {
-  std::set<std::string> main;
-  std::set<std::string> entry;
-  std::set<std::string> exit;
+  using Numbered = std::map<std::string, size_t>;
+  Numbered main;
+  Numbered entry;
+  Numbered exit;
   std::set<std::string> usual;  // in the action block of a step
   void add(const ChartAttributes& step);
   void add_usual(std::string_view name);
@@ -59,7 +61,8 @@ struct OwnActions {
   std::string conflict() const;
   // What stands in front of such an ACTION: its attribute, or nothing.
   std::string head(std::string_view name) const;
-  bool is_entry(std::string_view name) const;
+  // The ACTIONs of a POU are written in this order.
+  bool before(std::string_view a, std::string_view b) const;
 };
 
 }  // namespace xml

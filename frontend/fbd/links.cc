@@ -54,8 +54,9 @@ void drop(std::vector<Element>& elements, const std::vector<bool>& dropped) {
 }  // namespace
 
 void Links::add_box(const network::Text& name, uint32_t element, bool wire) {
-  auto [found, fresh] = boxes_.emplace(ir::fold_name(name.text), Box{element, wire, name});
-  if (fresh) names_.push_back(found->first);
+  auto [found, fresh] = boxes_.emplace(ir::fold_name(name.text), Box{{}, wire, name});
+  found->second.elements.push_back(element);
+  names_.push_back(found->first);
   longest_ = std::max({longest_, found->first.size(), name.text.size()});
   if (fresh || (!wire && !found->second.wire)) return;
   diagnostics_.add(Code::kBoxTwice, name.span, "there is another box named `" + name.text + "`",
@@ -68,8 +69,11 @@ void Links::add_use(uint32_t element, uint32_t input, const network::Text& opera
 
 void Links::forget(size_t uses, size_t elements) {
   uses_.resize(uses);
-  while (!names_.empty() && boxes_.at(names_.back()).element >= elements) {
-    boxes_.erase(names_.back());
+  while (!names_.empty()) {
+    const auto box = boxes_.find(names_.back());
+    if (box->second.elements.back() < elements) return;
+    box->second.elements.pop_back();
+    if (box->second.elements.empty()) boxes_.erase(box);
     names_.pop_back();
   }
 }
@@ -126,15 +130,22 @@ Links::Found Links::find(const Use& use, network::Network& network) {
   if (rest[0] != '.') return expression(use);
   rest = without_blanks(rest.substr(1));
   if (rest.empty() || !is_plain_name(rest)) return expression(use);
-  if (box->wire && box->element >= use.element) return feedback(use, *box);
-  uint32_t output = output_number(network, box->element, rest);
-  return {Link{box->element, output}, false};
+  const uint32_t element = box_for(use, *box);
+  if (box->wire && element >= use.element) return feedback(use, *box);
+  return {Link{element, output_number(network, element, rest)}, false};
+}
+
+// Of an instance with several boxes the one that was there last, else the first one below.
+uint32_t Links::box_for(const Use& use, const Box& box) {
+  const auto below = std::lower_bound(box.elements.begin(), box.elements.end(), use.element);
+  return below == box.elements.begin() ? *below : *(below - 1);
 }
 
 Links::Found Links::whole_box(const Use& use, const Box& box) {
   if (!box.wire) return {};  // the instance itself, as an argument
-  if (box.element >= use.element) return feedback(use, box);
-  return {Link{box.element, 0}, false};
+  const uint32_t element = box_for(use, box);
+  if (element >= use.element) return feedback(use, box);
+  return {Link{element, 0}, false};
 }
 
 Links::Found Links::feedback(const Use& use, const Box& box) {

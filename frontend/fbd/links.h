@@ -32,7 +32,7 @@ class Links {
 
  private:
   struct Box {
-    uint32_t element = 0;
+    std::vector<uint32_t> elements;  // ascending; several of one instance
     bool wire = false;
     network::Text name;
   };
@@ -48,6 +48,7 @@ class Links {
 
   Found find(const Use& use, network::Network& network);
   uint32_t output_number(network::Network& network, uint32_t box, std::string_view name);
+  static uint32_t box_for(const Use& use, const Box& box);
   Found whole_box(const Use& use, const Box& box);
   Found feedback(const Use& use, const Box& box);
   Found expression(const Use& use);

@@ -2,6 +2,7 @@
 // moves steps and controls actions. docs/adr/0009-sfc.md says what happens in which order.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -72,7 +73,9 @@ class ChartBody : public BodyPhase {
   void control(uint32_t number);
   std::optional<Target> variable_of(const sfc::Action& action);
   ir::ValueId limit_of(const ActionUse& use);
+  bool is_of_step(const sfc::Action& action) const;
   void bodies();
+  void bodies(bool of_steps);
   bool uses(uint32_t action, ActionQualifier qualifier) const {
     return (qualifiers_[action] >> static_cast<uint32_t>(qualifier) & 1) != 0;
   }
@@ -109,7 +112,8 @@ class ChartBody : public BodyPhase {
   Numbers left_;     // by step
   Numbers wanted_;   // by action: Q, with a final scan; of L, D, P
   std::vector<ir::ValueId> late_;  // by action: its statements run after those that end
-  ir::ValueId early_;              // some action has its final scan, or runs by P0
+  // Some action has its final scan, or runs by P0: one of steps themselves, another one.
+  std::array<ir::ValueId, 2> early_;
 };
 
 }  // namespace frontend

@@ -197,9 +197,7 @@ void ChartBody::control(uint32_t number) {
   ir::ValueId late =
       either(q, pulse(ActionQualifier::kP1, entered_));  // what was entered is active
   ir::ValueId early = build_.constant(kFlag, 0);
-  const bool ends_at_once =
-      action.decl != nullptr &&
-      tree_.find_attribute(action.decl->attributes, kNoFinalScan) != nullptr;
+  const bool ends_at_once = is_of_step(action);
   ir::Place due = part(record, "FINAL_DUE");
   if (!ends_at_once) early = both(build_.load(due, kFlag), no(q));
   build_.store(due, kFlag, ends_at_once ? early : q);
@@ -214,7 +212,8 @@ void ChartBody::control(uint32_t number) {
     return;
   }
   late_[number] = late;
-  early_ = either(early_, both(early, no(late)));
+  ir::ValueId& any_early = early_[ends_at_once ? 0 : 1];
+  any_early = either(any_early, both(early, no(late)));
 }
 
 // An action that is a BOOL variable.
@@ -243,23 +242,32 @@ std::optional<Target> ChartBody::variable_of(const sfc::Action& action) {
   return target(action.target);
 }
 
+// One that a step has for itself.
+bool ChartBody::is_of_step(const sfc::Action& action) const {
+  return action.decl != nullptr &&
+         tree_.find_attribute(action.decl->attributes, kNoFinalScan) != nullptr;
+}
+
+// First the actions that steps have for themselves, then all others.
+void ChartBody::bodies() {
+  bodies(true);
+  bodies(false);
+}
+
 // First final scans and what steps do when they are left, then what is requested: the end of one
 // step cannot undo what the next one does in the same scan.
-void ChartBody::bodies() {
-  bool any = false;
-  for (const sfc::Action& action : net_.actions) {
-    any = any || (action.decl != nullptr && action.uses != 0);
-  }
-  if (!any) return;
+void ChartBody::bodies(bool of_steps) {
+  const ir::ValueId any_early = early_[of_steps ? 0 : 1];
+  if (!any_early.valid()) return;
   ir::BlockId head = build_.new_block();
   ir::BlockId again = build_.new_block();
   ir::BlockId done = build_.new_block();
   ir::ValueId early = build_.add_param(head, kFlag);
-  build_.jump(head, {early_});
+  build_.jump(head, {any_early});
   build_.start(head);
   for (uint32_t number = 0; number < net_.actions.size(); ++number) {
     const sfc::Action& action = net_.actions[number];
-    if (action.decl == nullptr || action.uses == 0) continue;
+    if (action.decl == nullptr || action.uses == 0 || is_of_step(action) != of_steps) continue;
     set_line(action.name.span);
     ir::BlockId run = build_.new_block();
     ir::BlockId next = build_.new_block();

@@ -71,7 +71,12 @@ for line in 'Open(P1);' 'Filling(N);' 'Close(P0);' 'Count(N);' \
   grep -qF "$line" text/Plant.st || fail "no $line"
 done
 grep -B1 'ACTION Filling' text/Plant.st | grep -q no_final_scan || fail "a final scan of Filling"
-grep -B1 'ACTION Open' text/Plant.st | grep -q no_final_scan && fail "Open needs none"
+for action in Open Close; do
+  grep -B1 "ACTION $action" text/Plant.st | grep -q no_final_scan || fail "$action is of a step itself"
+done
+# As they run in a scan: what is left, what is entered, what is active.
+[ "$(sed -n 's/^ *ACTION \(.*\):$/\1/p' text/Plant.st | tr '\n' ' ')" = 'Close Open Count Filling ' ] ||
+  fail "order: $(grep ACTION text/Plant.st)"
 # Two scans of each Fill: the step's own action does not run once more when it is left.
 expect 0 stvm run plant.xml --virtual-time --scans 9 --print Plant.log --print Plant.n --print Plant.left_
 said "^Plant.log='offcoffc'"
@@ -82,7 +87,7 @@ expect 0 stc export text -o again.xml
 expect 0 stc import again.xml -o text_again
 expect 0 stvm run text_again --virtual-time --scans 9 --print Plant.log
 said "^Plant.log='offcoffc'"
-[ "$(grep -c no_final_scan text_again/*.st)" -eq 2 ] || fail "the attributes of the actions"
+[ "$(grep -c no_final_scan text_again/*.st)" -eq 4 ] || fail "the attributes of the actions"
 
 refused() {  # refused TEXT: the chart from standard input
   plant >bad.xml

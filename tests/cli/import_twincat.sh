@@ -281,6 +281,10 @@ done
 for odd in 18 17 48 12 64; do
   set_to "$(coil a $odd)" "$(op b)" | items '' | refused 'a (coil or output|jump) has (the )?marks'
 done
+for way in 4 8; do  # a jump, RETURN
+  printf '<o t="BoxTreeAssign">%s%s<n n="RValue" /></o>' "$(coil L 0)" "$(mark $way)" | items '' |
+    refused 'nothing is connected to a jump or RETURN'
+done
 set_to "$(coil '1 + 2' 4)" "$(op b)" | items '' | refused 'a jump goes to .1 \+ 2., which is no label'
 for text in 'b; c := TRUE' 'b (* ' 'b // ' 'P b' ')'; do
   set_to "$(to a)" "$(op "$text")" | items '' | refused 'an operand is .*, which is no expression'

@@ -745,7 +745,7 @@ END_VAR
     "MAIN": pou("MAIN", """PROGRAM MAIN
 VAR
 	fbValve : FB_Valve;
-	n, scaled : INT;
+	n, scaled, more, most : INT;
 	opened, ok : BOOL;
 END_VAR
 """, "Ld", [
@@ -758,7 +758,19 @@ END_VAR
          outputs=("ok", "opened"), en=True, call="Method")],
     [box("F_Scale", RAIL, val("n"), val("3"), names=("EN", "nRaw", "nFactor"), out_names=("ENO", "F_Scale"),
          out_types=("BOOL", "INT"), outputs=("", var("scaled", "INT")), en=True, call="Function")],
-]), "twin": """FUNCTION_BLOCK FB_Valve
+    # A program, twice: it is its own instance.
+    [box("P_Sum", val("n"), names=("nPart",), out_names=("nSum",), out_types=("INT",),
+         outputs=(var("more", "INT"),), call="Program")],
+    [box("P_Sum", val("3"), names=("nPart",), out_names=("nSum",), out_types=("INT",),
+         outputs=(var("most", "INT"),), call="Program")],
+]), "P_Sum": pou("P_Sum", """PROGRAM P_Sum
+VAR_INPUT
+	nPart : INT;
+END_VAR
+VAR_OUTPUT
+	nSum : INT;
+END_VAR
+""", "Fbd", [[to(var("nSum", "INT"), box("ADD", val("nSum"), val("nPart")))]]), "twin": """FUNCTION_BLOCK FB_Valve
 VAR bOpen : BOOL; nMoves : INT; END_VAR
 METHOD Open : BOOL
 VAR_INPUT bForce : BOOL; END_VAR
@@ -772,11 +784,20 @@ VAR_INPUT nRaw, nFactor : INT; END_VAR
 F_Scale := nRaw * nFactor;
 END_FUNCTION
 PROGRAM MAIN
-VAR fbValve : FB_Valve; n, scaled : INT; opened, ok : BOOL; END_VAR
+VAR fbValve : FB_Valve; n, scaled, more, most : INT; opened, ok : BOOL; END_VAR
 n := n + 1;
 ok := n MOD 5 = 0;
 IF ok THEN opened := fbValve.Open(bForce := n > 20); END_IF
 scaled := F_Scale(n, 3);
+P_Sum(nPart := n);
+more := P_Sum.nSum;
+P_Sum(nPart := 3);
+most := P_Sum.nSum;
+END_PROGRAM
+PROGRAM P_Sum
+VAR_INPUT nPart : INT; END_VAR
+VAR_OUTPUT nSum : INT; END_VAR
+nSum := nSum + nPart;
 END_PROGRAM
 """}
 

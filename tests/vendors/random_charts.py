@@ -109,8 +109,9 @@ class Maker:
 
 
 def simulation(maker, bodies):
-    """One scan, as the standard and this product have it: transitions see the steps of before, then
-    final scans and exits, then entries, then the others, each in the order of their declaration."""
+    """One scan: transitions see the steps of before, then exits, then entries, then actions of active
+    steps, each in the order of the chart, then the actions of the standard in the order of their
+    names, final scans first."""
     lines = ["n := n + 1;"]
     for name in maker.steps:
         lines.append(f"left_{name} := FALSE; came_{name} := FALSE;")
@@ -124,17 +125,16 @@ def simulation(maker, bodies):
     lines.append(f"ELSE came_{first} := TRUE; started := TRUE; END_IF")
     for name in maker.steps:
         lines.append(f"was_{name} := on_{name}; on_{name} := (on_{name} AND NOT left_{name}) OR came_{name};")
-    order = sorted(maker.actions, key=lambda one: one[0] != "entry")
-    for kind, name in order:
-        if kind == "exit":
-            lines.append(f"IF left_{name} THEN {bodies[kind, name]} END_IF")
-        if kind == "iec":
-            lines.append(f"IF was_{name} AND NOT on_{name} THEN {bodies[kind, name]} END_IF")
-    for kind, name in order:
-        if kind == "entry":
-            lines.append(f"IF came_{name} THEN {bodies[kind, name]} END_IF")
-        if kind in ("main", "iec"):
-            lines.append(f"IF on_{name} THEN {bodies[kind, name]} END_IF")
+    def run(wanted, condition, order=lambda name: 0):
+        for kind, name in sorted(maker.actions, key=lambda one: order(one[1])):
+            if kind == wanted:
+                lines.append(f"IF {condition.replace('*', name)} THEN {bodies[kind, name]} END_IF")
+
+    run("exit", "left_*")
+    run("entry", "came_*")
+    run("main", "on_*")
+    run("iec", "was_* AND NOT on_*", str)
+    run("iec", "on_*", str)
     flags = ", ".join(f"{flag}_{name}" for name in maker.steps for flag in ("on", "was", "left", "came"))
     return (f"PROGRAM MAIN\nVAR\n  n : INT;\n  sum : UDINT;\n  started, {flags} : BOOL;\nEND_VAR\n" +
             "\n".join(lines) + "\nEND_PROGRAM\n")
@@ -144,8 +144,10 @@ def main(seed, folder):
     maker = Maker(seed)
     elements = maker.chart()
     bodies = {one: f"sum := sum * 31 + {7 * number + 3};" for number, one in enumerate(maker.actions)}
+    members = [action(f"{kind}_{name}", bodies[kind, name]) for kind, name in maker.actions]
+    maker.random.shuffle(members)  # where they stand in the file says nothing
     chart = pou("FB_Chart", "FUNCTION_BLOCK FB_Chart\nVAR_IN_OUT\n\tn : INT;\n\tsum : UDINT;\nEND_VAR\n", "SFC",
-                elements, members=[action(f"{kind}_{name}", bodies[kind, name]) for kind, name in maker.actions])
+                elements, members=members)
     program = pou("MAIN", "PROGRAM MAIN\nVAR\n\tn : INT;\n\tsum : UDINT;\n\tchart : FB_Chart;\nEND_VAR\n", "ST",
                   "n := n + 1;\nchart(n := n, sum := sum);")
     for part, text in (("drawn/FB_Chart.TcPOU", chart), ("drawn/MAIN.TcPOU", program),

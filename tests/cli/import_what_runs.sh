@@ -1,0 +1,155 @@
+#!/bin/sh
+# Imported projects do what they did where they were made: what is excluded stays out, instances,
+# tasks, alternatives and programs as boxes are those that were meant, and older forms are read.
+. "$(dirname "$0")/lib.sh"
+html='<xhtml xmlns="http://www.w3.org/1999/xhtml">'
+vendor=http://www.3s-software.com/plcopenxml
+
+# runs INPUT SCANS VARIABLE=VALUE...
+runs() {
+  input=$1
+  scans=$2
+  shift 2
+  for pair in "$@"; do
+    expect 0 stvm run "$input" --dialect codesys --scans "$scans" --virtual-time --print "${pair%%=*}"
+    grep -qxF "$pair" out || fail "$input: not $pair"
+  done
+}
+project() {  # project VERSION POUS REST: a document
+  printf '<project xmlns="http://www.plcopen.org/xml/%s"><types><dataTypes/><pous>%s</pous></types>%s</project>\n' "$@"
+}
+pou() {  # pou NAME KIND INTERFACE BODY [REST]
+  printf '<pou name="%s" pouType="%s"><interface>%s</interface>%s%s</pou>' "$1" "$2" "$3" "$4" "${5:-}"
+}
+variable() { printf '<variable name="%s"><type><%s/></type></variable>' "$1" "$2"; }
+st() { printf '<body><ST>%s%s</xhtml></ST></body>' "$html" "$1"; }
+counter="<localVars>$(variable n INT)</localVars>"
+none='<instances><configurations/></instances>'
+instances() {  # instances TASK
+  printf '<instances><configurations><configuration name="C"><resource name="R">%s</resource></configuration></configurations></instances>' "$1"
+}
+
+# --- TC6 1.0: the type of an instance, times of a clock, a condition that hangs at a wire.
+pous="$(pou Slow program "$counter" '<body><ST>n := n + 1;</ST></body>')$(pou Fast program "$counter" '<body><ST>n := n + 100;</ST></body>')"
+project tc6.xsd "$pous" \
+  "$(instances '<task name="T" interval="00:00:00.010" priority="0"><pouInstance name="Slow" type="Fast"/></task>')" >old.xml
+needs_xml stc check old.xml
+runs old.xml 3 Slow.n=300
+expect 0 stc import old.xml -o old
+grep -q 'INTERVAL := T#00h00m00.010s' old/*.st || fail "interval: $(cat old/C.st)"
+for wrong in 00:10 1:2:3:4 :00:01 00:0x:00 00:00:1.2.3 0.5:00:01; do
+  sed "s/00:00:00.010/$wrong/" old.xml >wrong.xml
+  expect 1 stc check wrong.xml
+  said "E1074.* interval \`$wrong\` is no time"
+done
+place() { printf '<position x="%s" y="%s"/>' "$1" "$2"; }
+from() { printf '<connectionPointIn><connection refLocalId="%s"/></connectionPointIn>' "$1"; }
+step() { printf '<step localId="%s" name="%s"%s>%s%s</step>' "$1" "$2" "$5" "$(place "$3" "$4")" "${6:-}"; }
+chart="$(step 1 S0 100 10 ' initialStep="true"')<inVariable localId=\"20\">$(place 10 20)<connectionPointOut/><expression>n = 0</expression></inVariable>
+<transition localId=\"2\">$(place 100 40)$(from 1)<condition><connection refLocalId=\"20\"/></condition></transition>$(step 3 S1 100 60 '' "$(from 2)")"
+project tc6.xsd "$(pou P program "$counter" "<body><SFC>$chart</SFC></body>")" "$none" >wire.xml
+runs wire.xml 2 P.S1.X=TRUE
+
+# --- of alternatives the left one goes first, however high it stands
+always() { printf '<transition localId="%s">%s%s<condition><inline name=""><ST>TRUE</ST></inline></condition></transition>' "$1" "$(place "$2" "$3")" "$(from "$4")"; }
+chart="$(step 1 S0 100 10 ' initialStep="true"')<selectionDivergence localId=\"2\">$(place 50 40)$(from 1)</selectionDivergence>
+$(always 3 200 100 2)$(always 4 50 120 2)$(step 5 R 200 160 '' "$(from 3)")$(step 6 L 50 160 '' "$(from 4)")"
+project tc6_0201 "$(pou P program "$counter" "<body><SFC>$chart</SFC></body>")" "$none" >left.xml
+runs left.xml 2 P.L.X=TRUE P.R.X=FALSE
+
+# --- excluded from the build
+excluded="<addData><data name=\"$vendor/buildproperties\" handleUnknown=\"implementation\"><BuildProperties><ExcludeFromBuild>true</ExcludeFromBuild></BuildProperties></data></addData>"
+globals="$(instances "<globalVars name=\"G\">$(variable n INT)</globalVars>")"
+project tc6_0200 "$(pou PLC_PRG program '' "$(st 'G.n := G.n + 1;')" "<actions><action name=\"A\">$(st 'no;')$excluded</action></actions>")$(pou Old program '' "$(st 'G.n := 1000;')" "$excluded")" "$globals" >kept.xml
+runs kept.xml 3 n=3
+expect 0 stc import kept.xml -o kept
+said 'note\[W0071\]: `Old` is excluded from the build'
+said 'note\[W0071\].*`A` is excluded from the build'
+sed 's/ExcludeFromBuild>true/ExcludeFromBuild>false/g; s/>no;/>;/' kept.xml >all.xml
+runs all.xml 3 n=1000
+
+entry() {  # entry GUID NAME PARENT TYPE STATEMENTS EXCLUDED: of an export of CODESYS
+  cat <<XML
+<Single Type="{x}" Method="IArchivable"><Single Name="MetaObject" Type="{y}" Method="IArchivable">
+<Single Name="Guid" Type="System.Guid">$1</Single><Single Name="ParentGuid" Type="System.Guid">$3</Single>
+<Single Name="Name" Type="string">$2</Single>
+<Dictionary Name="Properties" Type="{2c41fa04-1834-41c1-816e-303c7aa2c05b}"><Entry>
+<Key><Single Type="System.Guid">24568a24-c491-472c-a21f-ee5d33859fab</Single></Key>
+<Value><Single Type="{24568a24-c491-472c-a21f-ee5d33859fab}" Method="IArchivable"><Single Name="ExcludeFromBuild" Type="bool">$6</Single></Single></Value>
+</Entry></Dictionary><Single Name="TypeGuid" Type="System.Guid">$4</Single></Single>
+<Single Name="Object" Type="{z}" Method="IArchivable">
+<Single Name="Interface" Type="{i}" Method="IArchivable"><Single Name="TextDocument" Type="{t}" Method="IArchivable"><Single Name="TextBlobForSerialisation" Type="string">PROGRAM $2
+VAR n : INT; END_VAR</Single></Single></Single>
+<Single Name="Implementation" Type="{j}" Method="IArchivable"><Single Name="TextDocument" Type="{t}" Method="IArchivable"><Single Name="TextBlobForSerialisation" Type="string">$5</Single></Single></Single>
+</Single></Single>
+XML
+}
+zero=00000000-0000-0000-0000-000000000000
+program=6f9dac99-8de1-4efc-8465-68ac443b7d08
+folder=738bea1e-99bb-4f04-90bb-a7a567e74e3a
+one=11111111-1111-1111-1111-11111111111
+{
+  echo '<ExportFile><StructuredView Guid="{a}"><Single xml:space="preserve" Type="{b}" Method="IArchivable"><List2 Name="EntryList">'
+  entry ${one}1 Runs $zero $program 'n := n + 1;' False
+  entry ${one}2 Old $zero $program 'no;' True
+  entry ${one}3 Attic $zero $folder '' True
+  entry ${one}4 InAttic ${one}3 $program 'no;' False
+  echo '</List2></Single></StructuredView></ExportFile>'
+} >plant.export
+runs plant.export 3 Runs.n=3
+expect 0 stc import plant.export -o exported
+for name in Old Attic InAttic; do said "note\[W0071\]: \`$name\` is excluded from the build"; done
+
+mkdir -p 'tc/POUs/Old/Back' 'tc/POUs/Drives (new)'
+object() {  # object NAME STATEMENTS
+  printf '<TcPlcObject Version="1.1.0.1"><POU Name="%s" Id="{1}"><Declaration><![CDATA[%sPROGRAM %s\nVAR n : INT; END_VAR]]></Declaration><Implementation><ST><![CDATA[%s]]></ST></Implementation></POU></TcPlcObject>\n' \
+    "$1" "${3:-}" "$1" "$2"
+}
+object MAIN 'n := n + 1;' '(* once (* a FUNCTION *) in there *)
+' >'tc/POUs/Drives (new)/MAIN.TcPOU'
+object Old 'no;' >tc/POUs/Old/Old.TcPOU
+object Back 'n := n + 2;' >tc/POUs/Old/Back/Back.TcPOU
+object Own 'n := n + 3;' >tc/POUs/Old/Own.TcPOU
+cat >tc/P.plcproj <<'XML'
+<Project xmlns="http://schemas.microsoft.com/developer/msbuild/2003"><ItemGroup>
+<Compile Include="POUs\Drives %28new%29\MAIN.TcPOU"/><Compile Include="POUs\Old\Old.TcPOU"/><Compile Include="POUs\Old\Back\Back.TcPOU"/>
+<Compile Include="POUs\Old\Own.TcPOU"><ExcludeFromBuild>false</ExcludeFromBuild></Compile>
+</ItemGroup><ItemGroup><Folder Include="POUs"/><Folder Include="pous\OLD\"><ExcludeFromBuild>true</ExcludeFromBuild></Folder>
+<Folder Include="POUs\Old\Back"><ExcludeFromBuild>false</ExcludeFromBuild></Folder></ItemGroup></Project>
+XML
+runs tc/P.plcproj 3 MAIN.n=3 Back.n=6 Own.n=9
+expect 0 stc import tc/P.plcproj -o tc_made
+said 'note\[W0071\]: `POUs/Old/Old.TcPOU` is excluded from the build'
+
+# --- tasks that wait for something
+settings() { printf '<addData><data name="%s/tasksettings" handleUnknown="implementation"><TaskSettings KindOfTask="%s"/></data></addData>' $vendor "$1"; }
+task() {  # task KIND ATTRIBUTES
+  project tc6_0200 "$(pou P program "$counter" "$(st 'n := n + 1;')")" \
+    "$(instances "<task name=\"T\" priority=\"1\" $2><pouInstance name=\"P\" typeName=\"\"/>$(settings "$1")</task>")"
+}
+task Cyclic 'interval="PT0.01S"' >cyclic.xml
+runs cyclic.xml 3 P.n=3
+task Freewheeling '' >free.xml
+runs free.xml 3 P.n=3
+task Event '' >event.xml
+expect 1 stc import event.xml -o event
+said 'error\[E1074\]: the task `T` is of kind Event: when it runs does not come in'
+
+# --- a program as a box, of which something uses an output; worksheets; UNION
+wire() { printf '<connectionPointIn><connection refLocalId="%s"%s/></connectionPointIn>' "$1" "${2:-}"; }
+calls="<FBD><inVariable localId=\"5\">$(place 50 30)<connectionPointOut/><expression>n</expression></inVariable>
+<block localId=\"3\" typeName=\"Sub\">$(place 100 10)<inputVariables><variable formalParameter=\"i\">$(wire 5)</variable></inputVariables><inOutVariables/><outputVariables><variable formalParameter=\"o\"><connectionPointOut/></variable></outputVariables><addData><data name=\"$vendor/fbdcalltype\" handleUnknown=\"implementation\"><CallType>program</CallType></data></addData></block>
+<outVariable localId=\"7\">$(place 200 30)$(wire 3 ' formalParameter="o"')<expression>n</expression></outVariable></FBD>"
+sub="$(pou Sub program "<inputVars>$(variable i INT)</inputVars><outputVars>$(variable o INT)</outputVars>" "$(st 'o := i + 7;')")"
+only="$(instances '<pouInstance name="P" typeName="P"/>')"
+project tc6_0201 "$sub$(pou P program "$counter" "<body>$calls</body>")" "$only" >box.xml
+runs box.xml 3 P.n=21
+sheet() { printf '<body WorksheetName="%s"><%s><inVariable localId="1">%s<connectionPointOut/><expression>n + 1</expression></inVariable><outVariable localId="2">%s%s<expression>n</expression></outVariable></%s></body>' "$1" "$2" "$(place 10 10)" "$(place 50 10)" "$(wire 1)" "$2"; }
+project tc6_0201 "$(pou P program "$counter" "$(sheet a FBD)$(sheet b FBD)")" "$none" >sheets.xml
+runs sheets.xml 3 P.n=6
+project tc6_0201 "$(pou P program "$counter" "$(sheet a FBD)$(st 'n := n + 1;')")" "$none" >mixed.xml
+expect 1 stc import mixed.xml -o mixed
+said 'error\[E1083\]: POU P: the worksheets of P are in two languages'
+project tc6_0200 "$(pou P program "<localVars><variable name=\"u\"><type><derived name=\"U\"/></type></variable></localVars>" "$(st 'u.w := 258;')")" \
+  "$none<addData><data name=\"$vendor/union\" handleUnknown=\"implementation\"><union name=\"U\">$(variable w WORD)<variable name=\"b\"><type><array><dimension lower=\"0\" upper=\"1\"/><baseType><BYTE/></baseType></array></type></variable></union></data></addData>" >union.xml
+runs union.xml 1 'P.u.b[0]=16#02' 'P.u.b[1]=16#01'
