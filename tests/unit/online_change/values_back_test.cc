@@ -134,8 +134,6 @@ TEST(ValuesBack, X4_case77_WhatASubrangeHadCutComesBack) {
   EXPECT_EQ(edits.row("Main.v")->fate, Fate::kConverted);
   EXPECT_EQ(edits.row("Main.v")->reason,
             "as before the edit that is taken out, unless written since; and 4 more like it");
-  uint64_t rows = 0;
-  for (const FateRow& row : edits.plan.fates) rows += row.count;
   EXPECT_EQ(edits.plan.counts.converted, 5u);
   plant.undo();
   EXPECT_EQ(plant.get("Main.v"), "100");
