@@ -6,14 +6,22 @@
 
 namespace frontend {
 
+bool Statements::is_same_row(const Stmt& a, const Stmt& b) const {
+  if (!a.span.begin.valid() || !b.span.begin.valid()) return false;
+  LineFinder lines(sema_.sources);
+  return lines.line_of(a.span.begin) == lines.line_of(b.span.begin);
+}
+
 Flow::Labels Statements::labels_of(Range32 list) {
   Flow::Labels labels;
   for (uint32_t i = 0; i < list.count; ++i) {
     const Stmt& stmt = tree_[tree_.stmt_lists[list.first + i]];
     if (stmt.kind != StmtKind::kLabel) continue;
     const Name name = tree_.name(stmt.name);
-    // `x : f(y);` is a slip of the finger, and would be a label and a call.
-    if (ask<Variables>().find_variable(name).valid()) {
+    // `x : f(y);` is a slip of the finger, and would be a label and a call. A label in a row of its
+    // own, as drawings and instruction lists have it, may be called like a variable.
+    if (ask<Variables>().find_variable(name).valid() && i + 1 < list.count &&
+        is_same_row(stmt, tree_[tree_.stmt_lists[list.first + i + 1]])) {
       error(DiagnosticCode::kDuplicateName, name.span,
             "`" + std::string(name.text) + "` is a variable and cannot be a label",
             "write `:=` to assign to it");

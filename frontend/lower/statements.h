@@ -23,6 +23,7 @@ class Statements : public BodyPhase {
   void check_end(ExprId condition, bool goes_on);
   void leave_loop(const Stmt& stmt);
   void leave_loops();
+  bool is_same_row(const Stmt& a, const Stmt& b) const;
   Flow::Labels labels_of(Range32 list);
   void jump(const Stmt& stmt);
   void label(const Stmt& stmt);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <unordered_map>
 #include <unordered_set>
@@ -20,6 +21,8 @@ struct Value {
   bool steady = true;  // a wire or a constant: what is written later does not change it
 };
 
+constexpr uint32_t kNoElement = std::numeric_limits<uint32_t>::max();
+
 bool writes(Kind kind) {
   return kind == Kind::kCoil || kind == Kind::kSink || kind == Kind::kBlock;
 }
@@ -37,6 +40,7 @@ class Writer {
     for (const Network& network : body_.networks) {
       network_ = &network;
       find_uses();
+      find_kept();
       head(network);
       for (const std::string& comment : network.comments) row(comment_rows(comment, indent_));
       if (!network.label.empty()) row(network.label.text + ':');
@@ -53,6 +57,8 @@ class Writer {
   void add_names(std::string_view text);
   void find_uses();
   void use(Link link, uint32_t user);
+  void find_kept();
+  void keep(uint32_t i);
   void element(uint32_t i);
   void contact(uint32_t i);
   void coil(uint32_t i);
@@ -82,6 +88,7 @@ class Writer {
   // What is known of power after an element; of a contact that is used at once, its operands.
   std::vector<std::vector<Value>> terms_;
   std::vector<std::string> wires_;                                      // of boxes of functions
+  std::map<std::pair<uint32_t, uint32_t>, std::string> kept_;           // wires of outputs, by link
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, Value> joints_;  // wires of ORs, by links
 };
 
@@ -134,6 +141,7 @@ void Writer::find_uses() {
   terms_.assign(count, {});
   wires_.assign(count, {});
   joints_.clear();
+  kept_.clear();
   uint32_t written = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const Element& element = network_->elements[i];
@@ -149,6 +157,46 @@ void Writer::find_uses() {
 void Writer::use(Link link, uint32_t user) {
   ++users_[link.element];
   last_user_[link.element] = user;
+}
+
+// An output that is named is that of the nearest box above. Of an instance with several boxes, what
+// is used below the next one has a wire.
+void Writer::find_kept() {
+  const std::vector<Element>& elements = network_->elements;
+  std::vector<uint32_t> until(elements.size());    // the last one that its value gets to
+  std::unordered_map<std::string, uint32_t> next;  // boxes, by folded instance
+  std::vector<uint32_t> again(elements.size(), kNoElement);
+  for (uint32_t i = static_cast<uint32_t>(elements.size()); i-- > 0;) {
+    const Element& element = elements[i];
+    const bool leads_on = element.kind == Kind::kCoil || element.kind == Kind::kContact;
+    for (const Input& input : element.inputs) {
+      for (Link link : input.from) {
+        if (link.element >= i) continue;
+        const uint32_t end = leads_on ? std::max(i, until[i]) : i;
+        until[link.element] = std::max(until[link.element], end);
+      }
+    }
+    if (element.kind != Kind::kBlock || element.operand.empty()) continue;
+    auto [below, first] = next.try_emplace(ir::fold_name(element.operand.text), i);
+    if (!first) again[i] = std::exchange(below->second, i);
+  }
+  for (const Element& element : elements) {
+    for (const Input& input : element.inputs) {
+      for (Link link : input.from) {
+        if (again[link.element] >= until[link.element]) continue;
+        kept_.try_emplace({link.element, link.output});
+      }
+    }
+  }
+}
+
+void Writer::keep(uint32_t i) {
+  const Element& element = network_->elements[i];
+  for (auto at = kept_.lower_bound({i, 0}); at != kept_.end() && at->first.first == i; ++at) {
+    at->second = new_name("MOVE");
+    row("WIRE " + at->second + " := MOVE(" + element.operand.text + '.' +
+        element.outputs[at->first.second].name + ");");
+  }
 }
 
 void Writer::element(uint32_t i) {
@@ -241,7 +289,10 @@ void Writer::block(uint32_t i) {
     pins += pin_value(from.modifier, from.text);
   }
   std::string call = element.type.text + '(' + pins + ");";
-  if (!element.operand.empty()) return row(element.operand.text + " : " + call);
+  if (!element.operand.empty()) {
+    row(element.operand.text + " : " + call);
+    return keep(i);
+  }
   // Networks without a label between them are one in text.
   bool free = !element.wire.empty() && claimed_.insert(ir::fold_name(element.wire.text)).second;
   wires_[i] = free ? element.wire.text : new_name(element.type.text);
@@ -268,8 +319,13 @@ Value Writer::value(Link link) {
   if (from.kind != Kind::kBlock) return joined(terms_[link.element]);
   const Output& output = from.outputs[link.output];
   Value value;
-  value.text = from.operand.empty() ? wires_[link.element] : from.operand.text;
-  if (!is_result(from, link.output)) value.text += '.' + output.name;
+  const auto kept = kept_.find({link.element, link.output});
+  if (kept != kept_.end() && !kept->second.empty()) {
+    value.text = kept->second;
+  } else {
+    value.text = from.operand.empty() ? wires_[link.element] : from.operand.text;
+    if (!is_result(from, link.output)) value.text += '.' + output.name;
+  }
   if (output.negated) value.modifier = Modifier::kNegated;
   return value;
 }
