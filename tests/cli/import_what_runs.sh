@@ -105,7 +105,7 @@ object() {  # object NAME STATEMENTS
   printf '<TcPlcObject Version="1.1.0.1"><POU Name="%s" Id="{1}"><Declaration><![CDATA[%sPROGRAM %s\nVAR n : INT; END_VAR]]></Declaration><Implementation><ST><![CDATA[%s]]></ST></Implementation></POU></TcPlcObject>\n' \
     "$1" "${3:-}" "$1" "$2"
 }
-object MAIN 'n := n + 1;' '(* once (* a FUNCTION *) in there *)
+object MAIN 'n := n + 1;' '(* once (* one *) FUNCTION in there *)
 ' >'tc/POUs/Drives (new)/MAIN.TcPOU'
 object Old 'no;' >tc/POUs/Old/Old.TcPOU
 object Back 'n := n + 2;' >tc/POUs/Old/Back/Back.TcPOU

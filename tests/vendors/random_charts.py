@@ -35,7 +35,7 @@ class Maker:
                 own[attribute] = f"{kind}_{name}"
                 self.actions.append((kind, name))
         others = []
-        if self.chance(0.3):  # an action of the standard, which has a final scan
+        if self.chance(0.6):  # an action of the standard, which has a final scan
             others = [(f"iec_{name}", "N")]
             self.actions.append(("iec", name))
         elements.append(step(name, *others, **own))
