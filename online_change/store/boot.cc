@@ -154,8 +154,51 @@ class Booting {
     if (!why.empty()) boot.alarms.push_back(why);
   }
 
+  // Of `image`, where they are the newest ones; also where no slot has the program any more.
+  std::optional<base::Bytes> own_values(const ir::VerifiedImage& image) const {
+    std::optional<base::Bytes> own = store_.retained_of(image.digest());
+    const base::Result<uint64_t> bytes = retained_bytes(image.image());
+    if (!own || !bytes.ok() || own->size() != *bytes) return std::nullopt;
+    return own;
+  }
+
+  // Of a trial that is lost, as undo of edit by edit would leave them. Nullopt: the edits do not
+  // lead from `accepted` to it, or the newest values are of none of its versions.
+  std::optional<base::Result<CarriedValues>> values_of_lost_trial(
+      const ir::VerifiedImage& accepted) const {
+    if (!found_.trial_lost) return std::nullopt;
+    const base::Result<std::vector<StoredEdit>> all = store_.edits();
+    if (!all.ok()) return std::nullopt;
+    ir::VerifiedImage image = accepted;
+    const std::optional<std::vector<ResumedEdit>> edits =
+        follow_edits(way_between(*all, accepted.digest(), *found_.trial_lost), accepted, image);
+    if (!edits) return std::nullopt;
+    size_t above = edits->size();  // edits whose version `image` is
+    std::optional<base::Bytes> own = own_values(image);
+    while (!own && above > 0) {
+      image = (*edits)[--above].before;
+      own = own_values(image);
+    }
+    if (!own) return std::nullopt;
+    CarriedValues out{std::move(*own), {}};
+    while (above > 0) {
+      const ResumedEdit& edit = (*edits)[--above];
+      base::Result<CarriedValues> below =
+          carry_retained_back(image, out.values, edit.before, edit.stored.retained);
+      if (!below.ok()) return below;
+      image = edit.before;
+      out.values = std::move(below->values);
+      if (!below->alarm.empty()) out.alarm += (out.alarm.empty() ? "" : "; ") + below->alarm;
+    }
+    return out;
+  }
+
   void begin_with(const ir::VerifiedImage& image, Boot& boot) {
-    take(found_.newest ? values_for(image, found_) : no_values(), boot);
+    if (auto values = values_of_lost_trial(image)) {
+      take(std::move(*values), boot);
+    } else {
+      take(found_.newest ? values_for(image, found_) : no_values(), boot);
+    }
     boot.trial_lost = found_.trial_lost;
     // Noted first: a cut in between notes it twice, not never.
     if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
@@ -176,9 +219,9 @@ class Booting {
   }
 
   base::Result<CarriedValues> values_left_for(const ir::VerifiedImage& given) const {
-    const base::Result<uint64_t> bytes = retained_bytes(given.image());
-    std::optional<base::Bytes> own = store_.retained_of(given.digest());
-    if (own && bytes.ok() && own->size() == *bytes) return CarriedValues{std::move(*own), {}};
+    if (std::optional<base::Bytes> own = own_values(given)) {
+      return CarriedValues{std::move(*own), {}};
+    }
     if (!found_.newest) return no_values();
     for (const StoredImage& stored : found_.held) {
       if (found_.newest->image != stored.digest) continue;
@@ -195,11 +238,12 @@ class Booting {
   // when it was not to boot: what it had dropped begins anew then.
   base::Result<CarriedValues> values_on_trial(const std::vector<StoredEdit>& all,
                                               const Boot& boot) const {
-    const RetainRecord& newest = *found_.newest;
     const ir::VerifiedImage& image = boot.image;
-    if (newest.image == image.digest() && fits(image.image(), newest)) {
-      return CarriedValues{newest.values, {}};
+    if (std::optional<base::Bytes> own = own_values(image)) {
+      return CarriedValues{std::move(*own), {}};
     }
+    if (!found_.newest) return no_values();
+    const RetainRecord& newest = *found_.newest;
     for (const ResumedEdit& edit : boot.edits) {
       const bool of_it = edit.before.digest() == newest.image;
       if (of_it && fits(edit.before.image(), newest)) {
@@ -238,7 +282,7 @@ class Booting {
     next.edits = std::move(*edits);
     next.alarms = std::move(boot.alarms);
     next.retained = initial_retained(next.image.image());
-    take(found_.newest ? values_on_trial(*all, next) : no_values(), next);
+    take(values_on_trial(*all, next), next);
     base::Status whole = store_.make_whole();
     if (!whole.ok()) next.alarms.push_back(whole.error().text);
     boot = std::move(next);

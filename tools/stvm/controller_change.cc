@@ -321,7 +321,7 @@ void ControllerService::note_edit(Trial trial, const online_change::SwitchReport
   note_switch(online_change::Event::kSwitched, previous()->digest(), report, predicted_ns,
               "edit " + trials_.back().edit.name + (note_.empty() ? "" : ", " + note_) +
                   (trials_.back().signer ? ", signed by " + trials_.back().signer->by : ""));
-  if (last_edit_boots()) complain(keep_edits());  // with the values of the boundary
+  if (needs_stored_edits()) complain(keep_edits());  // with the values of the boundary
 }
 
 }  // namespace stvm

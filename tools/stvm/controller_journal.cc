@@ -126,7 +126,9 @@ base::Status ControllerService::store_trial(Trial& next) {
   const bool permanent = (next.switch_flags & vm::kPermanent) != 0;
   if (permanent && last_edit_boots()) next.switch_flags |= vm::kLastEditBoots;
   const bool resumes = (next.switch_flags & vm::kLastEditBoots) != 0;
-  if (resumes) {  // the values of the switch come after it; until then these are newer than others
+  // With edits below it, too: when the trial is lost, their values lead back to what was accepted.
+  // Those of the switch come after it; until then these are newer than others.
+  if (resumes || !trials_.empty()) {
     next.retained = empty_snapshot();
     base::Status taken = look_at_boundary([&] { keeper_.take(next.retained); });
     if (taken.ok()) taken = keep_edits(&next);

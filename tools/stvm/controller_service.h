@@ -274,6 +274,9 @@ class ControllerService : public vm::Service {
   bool last_edit_boots() const {
     return !trials_.empty() && (trials_.back().switch_flags & vm::kLastEditBoots) != 0;
   }
+  // The store has one version to go back to; where there are more, or where the newest boots, it
+  // has the edits, too.
+  bool needs_stored_edits() const { return last_edit_boots() || trials_.size() > 1; }
   // The edits on trial, with one that is switched next.
   base::Status keep_edits(const Trial* next = nullptr);
   // The program that runs, and the one that undo would bring back.

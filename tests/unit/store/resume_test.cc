@@ -320,8 +320,8 @@ TEST(Resume, D4_X5_case77_ACutInTheUndoOfAnEditThatDoesNotBootLosesNoRetainedVal
   EXPECT_GT(resumed, 1u);
 }
 
-// A cut comes before the newest edit has saved any values, so the newest ones are of the edit below,
-// whose program another process has written. Undo leads back to it, and that is durable.
+// A cut comes before the newest edit has saved any values, so the newest ones are of the edit
+// below, whose program another process has written. Undo leads back to it, and that is durable.
 TEST(Resume, D4_X5_case77_AnUndoBehindACutIsDurable) {
   Outage rig(vm::kLastEditBoots);
   rig.change(1);
@@ -345,6 +345,67 @@ TEST(Resume, D4_X5_case77_AnUndoBehindACutIsDurable) {
     EXPECT_EQ(again.get("r"), "5");
   }
   EXPECT_GT(undone, 0u);
+}
+
+// What the second edit dropped has the value that it had until then, and not the one of when the
+// trial began; what the trial wrote and no edit dropped stays.
+TEST(Resume, X5_case77_ValuesOfALostTrialComeBackEditByEdit) {
+  Outage rig(0);
+  rig.change(1);
+  rig.plc.set("gone", "55");
+  rig.change(2);
+  rig.plc.set("r", "9");
+  rig.change(3);
+  ASSERT_TRUE(rig.plc.save().ok());
+  sim::SimStorage disk = behind_cut(rig.disk);
+  Plc plc(disk);
+  ASSERT_TRUE(plc.boot().ok());
+  EXPECT_EQ(plc.status().running, rig.digests[0]);
+  EXPECT_TRUE(plc.found().alarms.empty());
+  EXPECT_EQ(plc.get("gone"), "55");
+  EXPECT_EQ(plc.get("r"), "9");
+  EXPECT_EQ(plc.get("a"), "70000");  // nobody wrote it since it was narrowed
+}
+
+TEST(Resume, X5_case77_ValuesOfALostTrialComeBackThroughNewNames) {
+  const auto with = [](const std::string& variable) {
+    return "VAR_GLOBAL RETAIN " + variable +
+           "; END_VAR PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM";
+  };
+  sim::SimStorage disk;
+  {
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot(with("x : INT := 5")).ok());
+    ASSERT_TRUE(plc.change(with("{renamed from := 'x'} y : DINT := 5"), 0).ok());
+    ASSERT_TRUE(plc.change(with("{renamed from := 'y'} z : LINT := 5"), 0).ok());
+    plc.set("z", "9");
+    ASSERT_TRUE(plc.save().ok());
+  }
+  sim::SimStorage left = behind_cut(disk);
+  Plc plc(left);
+  ASSERT_TRUE(plc.boot().ok());
+  EXPECT_EQ(plc.get("x"), "9");
+}
+
+// The program is made again from the list of edits; its values are there all the same.
+TEST(Resume, X5_case56_WithoutItsSlotATrialKeepsItsValues) {
+  for (const char* slot : {"slot_b", "slot_c"}) {  // slot_a has what was accepted
+    for (const uint32_t policy : {0u, uint32_t{vm::kLastEditBoots}}) {
+      Outage rig(policy);
+      rig.change(1);
+      rig.plc.set("r", "7");
+      rig.change(2);
+      rig.plc.set("r", "8");
+      ASSERT_TRUE(rig.plc.save().ok());
+      rig.plc.stop();
+      sim::SimStorage disk = behind_cut(rig.disk);
+      disk.remove(slot);
+      Plc plc(disk);
+      ASSERT_TRUE(plc.boot().ok());
+      EXPECT_EQ(plc.get("r"), "8") << slot;
+      EXPECT_EQ(plc.get("a"), "32767") << slot;
+    }
+  }
 }
 
 }  // namespace
