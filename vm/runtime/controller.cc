@@ -210,7 +210,9 @@ void Controller::use(ForceChange& change) {
   base::check(at_boundary(), "a variable is forced while a task is inside a scan");
   for (ForceChange::Row& row : change.rows) {
     const auto tables = impl_->tables.find(row.generation);
-    if (tables != impl_->tables.end()) tables->second->exchange_forces(row.set);
+    if (tables == impl_->tables.end()) continue;
+    tables->second->exchange_forces(row.set);
+    if (row.generation == impl_->running.get()) impl_->scheduler.forces_exchanged(row.set);
   }
 }
 

@@ -34,6 +34,8 @@ class Scheduler {
   void restart();
   // All of them, and they are sent. `for_good`: holds for a time are over at once.
   void make_outputs_safe(bool for_good);
+  // Other forces hold than `before`: what a stopped task no longer has forced becomes safe.
+  void forces_exchanged(const ForcedSet& before);
   // Variables that are sent as these were written from outside.
   void outputs_set(std::span<const WriteSet::OutputBits> outputs);
   void outputs_put_back() { outputs_stale_ = true; }  // all of them
@@ -160,7 +162,7 @@ class Scheduler {
   bool again_ = false;       // the task that has just ended starts at once again
   bool paused_ = false;      // at a boundary in the middle of a cycle
   bool lengthened_ = false;  // this cycle, for a task that was late
-  bool trying_ = false;  // inside try_start_tasks()
+  bool trying_ = false;      // inside try_start_tasks()
   int64_t try_limit_ns_ = 0;
   bool try_failed_ = false;
   bool faulted_ = false;

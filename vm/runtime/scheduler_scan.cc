@@ -22,9 +22,8 @@ TaskSlot* Scheduler::next_released() {
 TaskSlot* Scheduler::choose() {
   TaskSlot* running = active_.empty() ? nullptr : active_.back();
   TaskSlot* released = next_released();
-  const bool goes_on = running != nullptr &&
-                       (released == nullptr ||
-                        running->status.priority <= released->status.priority);
+  const bool goes_on = running != nullptr && (released == nullptr || running->status.priority <=
+                                                                         released->status.priority);
   if (goes_on && running->state == TaskState::kSuspended) resume(*running);
   if (goes_on || released == nullptr) return running;
   begin_task(*released);
@@ -347,6 +346,28 @@ bool Scheduler::impose_on_outputs() {
         static_cast<uint8_t>((tables_->outputs[i] & ~mask[i]) | (now[i] & mask[i]));
   }
   return true;
+}
+
+void Scheduler::forces_exchanged(const ForcedSet& before) {
+  if (faulted_) return;
+  base::Bytes& forced = tables_->forced_outputs;
+  base::Bytes& mask = tables_->written;
+  std::fill(forced.begin(), forced.end(), uint8_t{0});
+  std::fill(mask.begin(), mask.end(), uint8_t{0});
+  for (const Force& force : before.forces) {
+    if (!force.symbol.output) continue;
+    const auto size = static_cast<uint32_t>(force.value.size());
+    tables_->process_image.mark_outputs(force.symbol.data, force.symbol.data + size, forced);
+  }
+  for (const TaskSlot& task : tables_->tasks) {
+    if (!task.status.stopped) continue;
+    for (size_t i = 0; i < mask.size(); ++i) mask[i] |= task.own_outputs[i] & forced[i];
+  }
+  if (std::all_of(mask.begin(), mask.end(), [](uint8_t bits) { return bits == 0; })) return;
+  tables_->safe.apply(mask, clock_.now_ns(), tables_->outputs);
+  impose_on_outputs();
+  outputs_to_variables(mask);
+  outputs_stale_ = true;
 }
 
 void Scheduler::outputs_set(std::span<const WriteSet::OutputBits> outputs) {

@@ -113,6 +113,46 @@ END_RESOURCE END_CONFIGURATION)",
   EXPECT_NE(plant.get("S.safe"), "0") << "what is not forced is safe at once";
 }
 
+// Nobody writes it any more: without the force it has to become what the stop made of others.
+TEST(Force, B3_AnOutputOfAStoppedTaskIsSafeBehindItsForce) {
+  Plant plant(R"(
+VAR_GLOBAL q AT %QX0.0 : BOOL; w AT %QB1 : BYTE; other AT %QB2 : BYTE; END_VAR
+PROGRAM Stops VAR n, x : INT; END_VAR q := TRUE; w := 3; n := n + 1; x := 10 / (5 - n); END_PROGRAM
+PROGRAM Goes VAR n : INT; END_VAR n := n + 1; other := 9; END_PROGRAM
+PROGRAM Idle VAR n, x : INT; third AT %QB3 : BYTE; END_VAR third := 1; n := n + 1; x := 10 / (4 - n); END_PROGRAM
+CONFIGURATION C RESOURCE R ON PLC
+  {attribute 'on_trap' := 'stop_task'} TASK High (INTERVAL := T#1ms, PRIORITY := 0);
+  {attribute 'on_trap' := 'stop_task'} TASK Last (INTERVAL := T#1ms, PRIORITY := 2);
+  PROGRAM I WITH Last : Idle;
+  TASK Low (INTERVAL := T#1ms, PRIORITY := 1);
+  PROGRAM S WITH High : Stops;
+  PROGRAM G WITH Low : Goes;
+END_RESOURCE END_CONFIGURATION)");
+  ASSERT_TRUE(plant.ok());
+  ASSERT_TRUE(plant->force("w", "55").ok());
+  ASSERT_TRUE(plant->force("q", "TRUE").ok());
+  ASSERT_TRUE(plant->force("other", "66").ok());
+  plant.cycles(20);
+  EXPECT_TRUE(plant.task("High").stopped);
+  EXPECT_EQ(plant.io.output(1), 55);
+  ASSERT_TRUE(plant->unforce("w").ok());
+  plant.cycles(2);
+  EXPECT_EQ(plant.io.output(1), 0);
+  EXPECT_EQ(plant.get("w"), "16#00");
+  EXPECT_EQ(plant.io.output(0) & 1, 1) << "is forced still";
+  ASSERT_TRUE(plant->unforce("q").ok());
+  ASSERT_TRUE(plant->unforce("other").ok());
+  plant.cycles(2);
+  EXPECT_EQ(plant.io.output(0) & 1, 0);
+  EXPECT_EQ(plant.io.output(2), 9) << "its task goes on";
+  ASSERT_TRUE(plant->force("w", "88").ok());  // after the stop
+  plant.cycles(2);
+  EXPECT_EQ(plant.io.output(1), 88);
+  ASSERT_TRUE(plant->unforce("w").ok());
+  plant.cycles(2);
+  EXPECT_EQ(plant.io.output(1), 0);
+}
+
 // What is prepared beside the running program changes nothing before it is exchanged.
 TEST(Force, ComesWithItsExchange) {
   Plant plant(kSource);
