@@ -1,9 +1,9 @@
 #include "online_change/store/boot.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ir/bytecode/no_program.h"
-#include "online_change/package/package.h"
 #include "online_change/store/retained_values.h"
 
 namespace online_change {
@@ -51,6 +51,13 @@ class Booting {
       : store_(store), who_(who), time_ns_(time_ns), found_(store.take_recovered()) {}
 
   base::Result<Boot> run(const std::optional<ir::VerifiedImage>& given, bool create) {
+    base::Result<Boot> boot = choose(given, create);
+    if (boot.ok()) boot->steps = std::move(steps_);
+    return boot;
+  }
+
+ private:
+  base::Result<Boot> choose(const std::optional<ir::VerifiedImage>& given, bool create) {
     std::string why = found_.nothing;
     const std::optional<ir::VerifiedImage> stored = verified(found_.boots, why);
     if (!stored) store_.reject_boots();
@@ -63,7 +70,7 @@ class Booting {
     Boot boot{first, initial_retained(first.image()), {}, std::move(found_.alarms)};
     const bool same = !given || (stored && given->digest() == stored->digest());
     if (stored && same && found_.resumes && resume(*stored, boot)) {
-      for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
+      note_alarms();
       note(Event::kResumed, stored->digest(), boot.image.digest(),
            std::to_string(boot.edits.size()) + " edit(s) are on trial still");
       note(Event::kStarted, {}, boot.image.digest(), {});
@@ -74,25 +81,50 @@ class Booting {
     } else if (!is_new()) {
       begin_without(why, *given, boot);
     }
-    if (given && (!stored || given->digest() != stored->digest())) {
-      base::Status installed = install(*given, stored, boot);
-      if (!installed.ok()) return installed.error();
-    }
-    for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
+    if (given && (!stored || given->digest() != stored->digest())) install(*given, stored, boot);
+    note_alarms();
     note(Event::kStarted, {}, boot.image.digest(), {});
     return boot;
   }
 
- private:
+  JournalEntry entry(Event event, const base::Digest& from, const base::Digest& to,
+                     std::string text) const {
+    JournalEntry out;
+    out.time_ns = time_ns_;
+    out.event = event;
+    out.who = who_;
+    out.from = from;
+    out.to = to;
+    out.text = std::move(text);
+    return out;
+  }
+
   void note(Event event, const base::Digest& from, const base::Digest& to, std::string text) {
-    JournalEntry entry;
-    entry.time_ns = time_ns_;
-    entry.event = event;
-    entry.who = who_;
-    entry.from = from;
-    entry.to = to;
-    entry.text = std::move(text);
-    store_.note(std::move(entry));
+    steps_.push_back([&store = store_, row = entry(event, from, to, std::move(text))](Boot&) {
+      store.note(row);
+      return base::Status(base::Ok{});
+    });
+  }
+
+  // Those of the steps before, too.
+  void note_alarms() {
+    steps_.push_back([&store = store_, row = entry(Event::kAlarm, {}, {}, {})](Boot& boot) {
+      for (const std::string& alarm : boot.alarms) {
+        JournalEntry one = row;
+        one.text = alarm;
+        store.note(std::move(one));
+      }
+      return base::Status(base::Ok{});
+    });
+  }
+
+  // What fails is an alarm, and the controller runs.
+  void try_to(base::Status (Store::*step)()) {
+    steps_.push_back([&store = store_, step](Boot& boot) {
+      const base::Status done = (store.*step)();
+      if (!done.ok()) boot.alarms.push_back(done.error().text);
+      return base::Status(base::Ok{});
+    });
   }
 
   // Nothing was ever stored, as far as anybody can tell.
@@ -120,7 +152,7 @@ class Booting {
       const bool own = newest && newest->image == image->digest();
       if (own && fits(image->image(), *newest)) boot.retained = newest->values;
       if (!newest) take(no_values(), boot);
-      for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
+      note_alarms();
       boot.fault = why + "; program " + base::short_hex(image->digest()) +
                    " is stored, too: `stvm restart` runs it";
       note(Event::kAlarm, {}, image->digest(), boot.fault);
@@ -138,7 +170,7 @@ class Booting {
       boot.fault += "; retained values of " + base::short_hex(*kept) +
                     " are stored, and come back with that very image";
     }
-    for (const std::string& alarm : boot.alarms) note(Event::kAlarm, {}, {}, alarm);
+    note_alarms();
     note(Event::kAlarm, {}, {}, boot.fault);
     return boot;
   }
@@ -202,8 +234,7 @@ class Booting {
     boot.trial_lost = found_.trial_lost;
     // Noted first: a cut in between notes it twice, not never.
     if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
-    base::Status settled = store_.settle();
-    if (!settled.ok()) boot.alarms.push_back(settled.error().text);
+    try_to(&Store::settle);
   }
 
   // What is given comes in place of a program that cannot be read: of the retained values, those
@@ -283,87 +314,63 @@ class Booting {
     next.alarms = std::move(boot.alarms);
     next.retained = initial_retained(next.image.image());
     take(values_on_trial(*all, next), next);
-    base::Status whole = store_.make_whole();
-    if (!whole.ok()) next.alarms.push_back(whole.error().text);
+    try_to(&Store::make_whole);
     boot = std::move(next);
     return true;
   }
 
   // Durable before it runs. The values of the program before are stored in its own layout first, so
   // that a cut in between finds them.
-  base::Status install(const ir::VerifiedImage& given,
-                       const std::optional<ir::VerifiedImage>& stored, Boot& boot) {
-    if (stored && !store_.retained_fits()) {
-      base::Status saved = store_.save_retained(stored->digest(), 0, boot.retained);
-      if (!saved.ok()) return saved;
-    }
+  void install(const ir::VerifiedImage& given, const std::optional<ir::VerifiedImage>& stored,
+               Boot& boot) {
+    base::Bytes before;
     if (stored) {
-      const base::Bytes before = std::move(boot.retained);
+      before = std::move(boot.retained);
       boot.retained = initial_retained(given.image());
       take(carry_retained(*stored, before, given), boot);
     }
-    base::Status installed =
-        store_.install({given.digest(), given.encoded()}, boot.retained.size());
-    if (!installed.ok()) return installed;
-    note(Event::kInstalled, stored ? stored->digest() : base::Digest{}, given.digest(), {});
+    const base::Digest from = stored ? stored->digest() : base::Digest{};
+    steps_.push_back([&store = store_, given, from, has_before = stored.has_value(),
+                      before = std::move(before)](Boot& chosen) {
+      if (has_before && !store.retained_fits()) {
+        base::Status saved = store.save_retained(from, 0, before);
+        if (!saved.ok()) return saved;
+      }
+      return store.install({given.digest(), given.encoded()}, chosen.retained.size());
+    });
+    note(Event::kInstalled, from, given.digest(), {});
     boot.image = given;
-    return installed;
   }
 
   Store& store_;
   std::string who_;
   int64_t time_ns_;
   Recovered found_;
+  std::vector<Boot::Step> steps_;
 };
 
 }  // namespace
 
-std::optional<std::vector<ResumedEdit>> follow_edits(const std::vector<StoredEdit>& edits,
-                                                     const ir::VerifiedImage& first,
-                                                     ir::VerifiedImage& last) {
-  std::vector<ResumedEdit> out;
-  ir::VerifiedImage image = first;
-  for (const StoredEdit& edit : edits) {
-    const base::Result<uint64_t> retained = retained_bytes(image.image());
-    if (!retained.ok() || *retained != edit.retained.size()) return std::nullopt;
-    base::Result<Package> package = decode(edit.package, image.encoded());
-    if (!package.ok()) return std::nullopt;
-    base::Result<ir::VerifiedImage> next = ir::verify(std::move(package->image));
-    if (!next.ok() || next->digest() != edit.to) return std::nullopt;
-    out.push_back({edit, image});
-    image = *next;
+base::Result<Boot> choose_boot(Store& store, const std::optional<ir::VerifiedImage>& given,
+                               const std::string& who, int64_t time_ns, bool create) {
+  return Booting(store, who, time_ns).run(given, create);
+}
+
+base::Status carry_out(Boot& boot) {
+  for (const Boot::Step& step : std::exchange(boot.steps, {})) {
+    base::Status done = step(boot);
+    if (!done.ok()) return done;
   }
-  last = image;
-  return out;
-}
-
-base::Bytes encode_trial(const std::vector<ResumedEdit>& edits) {
-  if (edits.empty()) return {};
-  std::vector<StoredEdit> stored;
-  for (const ResumedEdit& edit : edits) stored.push_back(edit.stored);
-  base::ByteWriter out;
-  out.blob(edits.front().before.encoded());
-  out.blob(encode(stored));
-  return out.take();
-}
-
-std::optional<std::vector<ResumedEdit>> decode_trial(base::ByteSpan bytes,
-                                                     const base::Digest& last) {
-  base::ByteReader in(bytes);
-  const base::ByteSpan image = in.blob();
-  const std::optional<std::vector<StoredEdit>> edits = decode_edits(in.blob());
-  if (!in.done() || !edits) return std::nullopt;
-  base::Result<ir::VerifiedImage> first = ir::verify(base::Bytes(image.begin(), image.end()));
-  if (!first.ok()) return std::nullopt;
-  ir::VerifiedImage made = *first;
-  auto out = follow_edits(*edits, *first, made);
-  if (!out || made.digest() != last) return std::nullopt;
-  return out;
+  return base::Ok{};
 }
 
 base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
                         const std::string& who, int64_t time_ns, bool create) {
-  return Booting(store, who, time_ns).run(given, create);
+  base::Result<Boot> boot = choose_boot(store, given, who, time_ns, create);
+  if (!boot.ok()) return boot;
+  base::Status done = carry_out(*boot);
+  if (!done.ok()) return done.error();
+  return boot;
 }
 
 }  // namespace online_change

@@ -1,21 +1,18 @@
 // What a controller starts with: the program that boots, or one that it is given, and its retained
-// values, whatever the power cut or the disk has left. A lost trial is over when it returns.
+// values, whatever the power cut or the disk has left. A lost trial is over when its steps are
+// carried out.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ir/bytecode/verify.h"
+#include "online_change/store/resumed_edits.h"
 #include "online_change/store/store.h"
 
 namespace online_change {
-
-// An edit that is on trial still (D4).
-struct ResumedEdit {
-  StoredEdit stored;
-  ir::VerifiedImage before;  // that it was made on
-};
 
 struct Boot {
   ir::VerifiedImage image;
@@ -28,23 +25,20 @@ struct Boot {
   std::string fault = {};
   // Not empty: `image` is the newest of these, oldest first, and on trial.
   std::vector<ResumedEdit> edits = {};
+  // What has to be stored before it runs, and the rows of the journal. They refer to the store.
+  using Step = std::function<base::Status(Boot&)>;
+  std::vector<Step> steps = {};
 };
 
-// The versions that these edits make, one behind the other, from what the first one was made on;
-// `last` is what the last one has made. Nullopt: one of them is not what it should be.
-std::optional<std::vector<ResumedEdit>> follow_edits(const std::vector<StoredEdit>& edits,
-                                                     const ir::VerifiedImage& first,
-                                                     ir::VerifiedImage& last);
-// As a recording that begins with a trial has them: the image that the first one was made on, and
-// the edits. Empty: there is none.
-base::Bytes encode_trial(const std::vector<ResumedEdit>& edits);
-// Nullopt: damaged. They lead to `last`.
-std::optional<std::vector<ResumedEdit>> decode_trial(base::ByteSpan bytes,
-                                                     const base::Digest& last);
-
 // `given` replaces what is stored; the retained values follow by path and type. kFileNotFound when
-// nothing was ever stored, unless `create` says that a program comes later; kStorageFailed when
-// `given` cannot be stored. Notes in the journal what it did, at `time_ns`.
+// nothing was ever stored, unless `create` says that a program comes later. Stores nothing: a start
+// that is refused for another reason leaves the store as it was.
+base::Result<Boot> choose_boot(Store& store, const std::optional<ir::VerifiedImage>& given,
+                               const std::string& who, int64_t time_ns, bool create = false);
+// Its steps. kStorageFailed when what was given cannot be stored; what else fails is an alarm.
+// Notes in the journal what it did, at the time of the choice.
+base::Status carry_out(Boot& boot);
+// Both.
 base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
                         const std::string& who, int64_t time_ns, bool create = false);
 

@@ -19,12 +19,18 @@ base::Status ControllerService::keep_edits(const Trial* next) {
   std::vector<online_change::StoredEdit> edits;
   const auto add = [&](const Trial& trial) {
     edits.push_back({trial.edit.name, trial.edit.who, trial.edit.time_ns, trial.edit.cycle,
-                     trial.flags, trial.switch_flags, trial.edit.from, trial.edit.to,
-                     trial.package, trial.retained.cycle, trial.retained.values});
+                     trial.flags, trial.switch_flags, trial.edit.from, trial.edit.to, trial.package,
+                     trial.retained.cycle, trial.retained.values});
   };
   for (const Trial& trial : trials_) add(trial);
   if (next != nullptr) add(*next);
   return store_.keep_edits(edits);
+}
+
+void ControllerService::begin(const std::vector<std::string>& alarms,
+                              const std::vector<online_change::ResumedEdit>& edits) {
+  start_.alarms = alarms;
+  resume(edits);
 }
 
 // From now on the policy of the edit counts again.
@@ -36,8 +42,12 @@ void ControllerService::resume(const std::vector<online_change::ResumedEdit>& ed
         i + 1 < edits.size() ? edits[i + 1].before : controller_.verified();
     adopted = change_.adopt(stored.package, edits[i].before, after, stored.retained);
     if (!adopted.ok()) break;
-    Trial trial{describe(edits[i].before, after, change_.plan()), edits[i].before,
-                stored.package, stored.stage_flags, stored.switch_flags, {}};
+    Trial trial{describe(edits[i].before, after, change_.plan()),
+                edits[i].before,
+                stored.package,
+                stored.stage_flags,
+                stored.switch_flags,
+                {}};
     trial.edit.name = stored.name;
     trial.edit.who = stored.who;
     trial.edit.time_ns = stored.time_ns;

@@ -61,6 +61,9 @@ class ControllerService : public vm::Service {
   void stand_between_cycles() { stands_ = true; }
   // Sets the log whose events are shown to those who ask; it must outlive this.
   void show_events(const EventLog& log) { events_ = &log; }
+  // Before anything is answered: what the start says is wrong, and resume().
+  void begin(const std::vector<std::string>& alarms,
+             const std::vector<online_change::ResumedEdit>& edits);
   // The trial of another process goes on (D4); before anything is answered. What cannot is an
   // alarm, and its edits have no way back.
   void resume(const std::vector<online_change::ResumedEdit>& edits);
@@ -108,8 +111,7 @@ class ControllerService : public vm::Service {
   static base::Error too_long();
   base::Bytes force_rows(const std::vector<std::string>& names) const;
   Answer before_edit(const vm::Request& request);
-  static Answer image_part(const base::Digest& digest, const base::Bytes& encoded,
-                           uint64_t offset);
+  static Answer image_part(const base::Digest& digest, const base::Bytes& encoded, uint64_t offset);
 
   // controller_units.cc
   // An edit on trial, or one that was undone.
@@ -117,7 +119,7 @@ class ControllerService : public vm::Service {
     TrialEdit edit;
     ir::VerifiedImage before;  // that it was made on
     base::Bytes package;
-    uint32_t flags = 0;                // as it was staged with
+    uint32_t flags = 0;  // as it was staged with
     uint32_t switch_flags = 0;
     online_change::Snapshot retained;  // of `before`, at the switch
     std::string taken_out = {};        // the edit whose work it takes back; "": none
@@ -153,8 +155,8 @@ class ControllerService : public vm::Service {
   base::Status look(const ir::Image* next, bool whole);
   Answer every_page(uint64_t first, const online_change::Plan& plan, const ir::Image& next,
                     FatePage page);
-  Answer group_page(uint64_t first, const online_change::Plan& plan,
-                    const ir::VerifiedImage& next, bool back, FatePage page) const;
+  Answer group_page(uint64_t first, const online_change::Plan& plan, const ir::VerifiedImage& next,
+                    bool back, FatePage page) const;
   // In the version that the report is about; `back`: by undo.
   FateLine live_line(const online_change::FateRow& row, const online_change::UpdateStep* known,
                      const ir::Image& next, bool back) const;
@@ -166,8 +168,8 @@ class ControllerService : public vm::Service {
   Answer stage_package(base::Bytes package, uint32_t flags, const std::string& unless,
                        const std::string& redone, const std::string& taken_out,
                        const Signer& signer);
-  Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy,
-                         uint32_t flags, const std::string& taken_out);
+  Answer stage_rehearsal(base::ByteSpan package, online_change::Strategy strategy, uint32_t flags,
+                         const std::string& taken_out);
   double pace();  // of this machine (online_change/apply/pace.h)
   base::Status stage_unless_aborted(base::ByteSpan package, online_change::Strategy strategy);
   // The change that this connection stages, rehearses or, on trial, would undo.
@@ -234,7 +236,7 @@ class ControllerService : public vm::Service {
   void begin_first(base::ByteSpan retained);
 
   // controller_trial.cc
-  struct Probation {  // of the version on trial
+  struct Probation {           // of the version on trial
     uint64_t ends = 0;         // cycle
     std::string health;        // a BOOL that must stay TRUE; "": none
     uint32_t health_data = 0;  // where it is in data memory
@@ -310,11 +312,11 @@ class ControllerService : public vm::Service {
   uint64_t chains_ = 0;   // such edits until now
   online_change::Change change_;
   UnitTable units_;
-  std::vector<Trial> trials_;     // oldest first
-  std::vector<Trial> undone_;     // of which the last one can be brought again
-  uint64_t edits_made_ = 0;       // since the start: names
+  std::vector<Trial> trials_;  // oldest first
+  std::vector<Trial> undone_;  // of which the last one can be brought again
+  uint64_t edits_made_ = 0;    // since the start: names
   base::Bytes upload_;
-  uint64_t upload_of_ = 0;   // session
+  uint64_t upload_of_ = 0;  // session
   std::string upload_by_;
   uint64_t live_of_ = 0;
   uint64_t history_of_ = 0;
@@ -324,22 +326,22 @@ class ControllerService : public vm::Service {
   uint32_t staged_flags_ = 0;
   base::Digest staged_digest_{};  // of the package that was sent; zeros: brought again by redo
   Signer signer_;                 // of what is staged
-  std::string redone_;  // name of the edit that is staged again; "": a new one
-  double pace_ = 0;        // 0: not measured yet
-  std::string taken_out_;  // the edit on trial whose work it takes back; "": none
-  uint64_t staged_of_ = 0;       // session
-  bool preparing_ = false;       // a request is about it just now
-  bool stands_ = false;          // stand_between_cycles()
-  std::string abort_why_;        // by whom or what it ends; "": it goes on
-  std::string aborted_;          // the same of the last one that ended so, with its time
-  uint64_t aborted_of_ = 0;      // session
-  Unless unless_;                // of what is staged
-  std::string note_;             // what the journal says of it, by whoever brought it (E-33)
-  bool only_looked_at_ = false;  // what is staged, by vm::kRehearsal: nothing of it is kept
-  uint64_t looked_at_by_ = 0;    // session of that
-  std::set<uint64_t> gone_;      // sessions whose dry run has been replaced
+  std::string redone_;            // name of the edit that is staged again; "": a new one
+  double pace_ = 0;               // 0: not measured yet
+  std::string taken_out_;         // the edit on trial whose work it takes back; "": none
+  uint64_t staged_of_ = 0;        // session
+  bool preparing_ = false;        // a request is about it just now
+  bool stands_ = false;           // stand_between_cycles()
+  std::string abort_why_;         // by whom or what it ends; "": it goes on
+  std::string aborted_;           // the same of the last one that ended so, with its time
+  uint64_t aborted_of_ = 0;       // session
+  Unless unless_;                 // of what is staged
+  std::string note_;              // what the journal says of it, by whoever brought it (E-33)
+  bool only_looked_at_ = false;   // what is staged, by vm::kRehearsal: nothing of it is kept
+  uint64_t looked_at_by_ = 0;     // session of that
+  std::set<uint64_t> gone_;       // sessions whose dry run has been replaced
   std::unique_ptr<Rehearsal> rehearsal_;
-  uint64_t rehearsal_of_ = 0;  // session
+  uint64_t rehearsal_of_ = 0;                         // session
   std::optional<LiveReport> live_;                    // of the change that is looked_at()
   std::optional<online_change::EveryFate> every_;     // of the same
   std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of

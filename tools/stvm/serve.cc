@@ -176,9 +176,8 @@ base::Result<vm::ControllerOptions> limits_of(const tools::Options& options) {
   base::Result<uint64_t> slack = options.number("--code-slack", settings->code_slack_percent);
   if (!slack.ok()) return slack.error();
   if (*slack > vm::CodeSlots::kMostSlackPercent) {
-    return base::Error{base::Refusal::kUsage,
-                       "--code-slack is at most " +
-                           std::to_string(vm::CodeSlots::kMostSlackPercent)};
+    return base::Error{base::Refusal::kUsage, "--code-slack is at most " +
+                                                  std::to_string(vm::CodeSlots::kMostSlackPercent)};
   }
   limits.code_slack_percent = *slack;
   base::Result<vm::Tier> tier = tier_of(options);
@@ -203,9 +202,7 @@ base::Result<vm::RealTimeOptions> real_time_options(const tools::Options& option
   return out;
 }
 
-bool is_journal() {
-  return LogOutput::is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM"));
-}
+bool is_journal() { return LogOutput::is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM")); }
 
 void print_ready(ServedResource& resource) {
   const vm::Controller& controller = resource.controller();
@@ -219,7 +216,9 @@ void print_ready(ServedResource& resource) {
 base::Status run_one(ServedResource& resource, const vm::RealTimeOptions& real_time,
                      ServiceNotify& notify) {
   // After all other threads, which stay as they are.
-  if (base::Status fit = resource.make_real_time(real_time); !fit.ok()) {
+  base::Status fit = resource.make_real_time(real_time);
+  if (fit.ok()) fit = resource.begin();
+  if (!fit.ok()) {
     resource.give_up();
     return fit;
   }
@@ -245,6 +244,7 @@ base::Status run_several(Served& served, const vm::RealTimeOptions& real_time,
       vm::RealTimeOptions own = real_time;
       if (own.cpu) *own.cpu += static_cast<uint32_t>(i);
       results[i] = served[i]->make_real_time(own);
+      if (results[i].ok()) results[i] = served[i]->begin();
       if (results[i].ok()) {
         print_ready(*served[i]);
         ++ready;

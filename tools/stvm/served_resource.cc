@@ -93,7 +93,7 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
   if (base::Status admitted = out->admit(given, trust); !admitted.ok()) {
     return base::Error{admitted.error().refusal, directory + ": " + admitted.error().text};
   }
-  auto boot = online_change::boot(out->store_, given, kWho, wall_time_ns(), create);
+  auto boot = online_change::choose_boot(out->store_, given, kWho, wall_time_ns(), create);
   if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) return empty(directory);
   if (!boot.ok()) {
     return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
@@ -121,7 +121,6 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
       controller(), clock, store_, mailbox_,
       StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho, trust_.get()});
   service_->is_version(tools::kVersion);
-  service_->resume(boot_->edits);
   service_->store_beside();
   service_->show_events(*events_);
   events_->watch(running_->recorder());
@@ -131,6 +130,15 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   server_ = std::move(*server);
   service_->keeper().start();
   events_->start();
+  return base::Ok{};
+}
+
+base::Status ServedResource::begin() {
+  base::Status stored = online_change::carry_out(*boot_);
+  if (!stored.ok()) {
+    return base::Error{stored.error().refusal, directory_ + ": " + stored.error().text};
+  }
+  service_->begin(boot_->alarms, boot_->edits);
   return base::Ok{};
 }
 

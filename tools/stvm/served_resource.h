@@ -45,6 +45,9 @@ class ServedResource {
   // `real_clock` is `clock`, or null in virtual time.
   base::Status start(const ResourceController::Settings& settings, vm::Clock& clock,
                      const vm::RealClock* real_clock);
+  // Nothing can refuse the start any more: what boots is stored, and the trial goes on or is over.
+  // Before run().
+  base::Status begin();
   // Makes the calling thread real-time, after start(): it will be the control thread.
   base::Status make_real_time(const vm::RealTimeOptions& options);
   // Until `stop` says so, or somebody asks this resource to; `alive` in each cycle and while it
