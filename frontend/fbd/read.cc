@@ -58,16 +58,25 @@ class Reader {
   size_t head(size_t at) {
     const size_t end = std::min(text_.find('}', at), text_.size() - 1) + 1;
     const std::string_view pragma = text_.substr(at, end - at);
-    // Others, as {IF ...}, are no rows.
-    const bool own = base::fold_name(pragma.substr(1)).starts_with(base::fold_name("network"));
-    if (!own) return end;
-    std::optional<network::Head> head = network::read_head(pragma);
-    if (!head) {
+    const auto refuse = [&](const char* why, std::string fix) {
       const uint32_t offset = begin_.offset + static_cast<uint32_t>(at);
       cursor_.report(Code::kBadDiagramRow, {{offset}, {begin_.offset + static_cast<uint32_t>(end)}},
-                     "this row between { } is not understood", std::string(network::kHeadForm));
+                     why, std::move(fix));
       cursor_.forget();
       return end;
+    };
+    const size_t first = std::min(pragma.find_first_not_of(" \t", 1), pragma.size());
+    const std::string inside = base::fold_name(pragma.substr(first));
+    for (const char* word : {"IF", "ELSIF", "ELSE", "END_IF", "DEFINE", "UNDEFINE"}) {
+      if (!inside.starts_with(base::fold_name(word))) continue;
+      return refuse("a drawing has no rows that are there on a condition only",
+                    "write {IF ...} around the whole body, or two actions");
+    }
+    // Others are no rows.
+    if (!inside.starts_with(base::fold_name("network"))) return end;
+    std::optional<network::Head> head = network::read_head(pragma);
+    if (!head) {
+      return refuse("this row between { } is not understood", std::string(network::kHeadForm));
     }
     begin_network();
     attach(false);  // what stands in front of the row

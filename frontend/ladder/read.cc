@@ -43,20 +43,22 @@ class RungReader {
     report(code, piece.byte, piece.bytes, std::move(text), std::move(fix));
   }
 
-  // Boxes have a `:` or `_` as a word.
+  // Boxes have a `:` that stands in no parentheses, or `_` as a word.
   bool is_contact(const Piece& piece) const {
     if (piece.kind != SegmentKind::kContact) return false;
     std::string_view inside = text_.substr(piece.byte, piece.bytes);
     bool word = false;
     bool colon = false;
+    int depth = 0;
     char quote = '\0';
-    for (char c : inside) {
+    for (char c : inside.substr(1)) {  // behind its own bracket
       if (quote != '\0') {
         if (c == quote) quote = '\0';
       } else if (c == '\'' || c == '"') {
         quote = c;
       } else {
-        colon = colon || c == ':';
+        depth += c == '(' || c == '[' ? 1 : c == ')' || c == ']' ? -1 : 0;
+        colon = colon || (c == ':' && depth <= 0);
       }
     }
     for (size_t i = 1; i + 1 < inside.size() && !word; ++i) {

@@ -50,8 +50,7 @@ void Parser::Diagram::block(uint32_t number, const Element& element) {
     ExprId now = member(parse(element.operand, true), element.outputs[i].name, element.span);
     output.kept = keep(now, element.span);
   }
-  if (!enable.expr.valid() || enable.power) return;
-  conditions_[number] = enable.expr;
+  if (enable.expr.valid() && !enable.power) conditions_[number] = enable.expr;
   for (uint32_t i = 0; i < element.outputs.size(); ++i) {
     bool eno = ir::same_name(element.outputs[i].name, "ENO");
     if (eno && outputs_[number][i].kept.valid()) conditions_[number] = outputs_[number][i].kept;

@@ -42,8 +42,8 @@ base::Status ControllerService::check_unless(const std::string& name) {
   base::Status taken = look_at_boundary([&] { unless_holds(); });
   const bool holds = std::exchange(unless_, staged).seen;
   if (!taken.ok() || !holds) return taken;
-  return base::Error{base::Refusal::kDeadline, "the change was aborted " + unless_text(name) +
-                                                "; the old program runs on"};
+  return base::Error{base::Refusal::kDeadline,
+                     "the change was aborted " + unless_text(name) + "; the old program runs on"};
 }
 
 bool ControllerService::unless_holds() {
@@ -115,8 +115,9 @@ std::optional<base::Bytes> ControllerService::answer_urgent(const std::string& u
 // Beside a request that prepares one: it has been brought, or a part of it.
 base::Result<base::Bytes> ControllerService::abort(const vm::Request&) {
   if (change_.state() == State::kTrial) {
-    return abort_answer(false, "nothing is being prepared; a change is on trial: `stvm undo` "
-                               "takes it back");
+    return abort_answer(false,
+                        "nothing is being prepared; a change is on trial: `stvm undo` "
+                        "takes it back");
   }
   if (staged_) {
     const std::string whose = changed_by_;
@@ -126,7 +127,12 @@ base::Result<base::Bytes> ControllerService::abort(const vm::Request&) {
   }
   if (!upload_.empty()) {
     upload_ = base::Bytes();
+    aborted_of_ = upload_of_;
+    aborted_ = time_text(wall_time_()) + ", by " + who_;
     const std::string whose = std::exchange(upload_by_, {});
+    online_change::JournalEntry cancelled = entry(online_change::Event::kCancelled);
+    cancelled.text = "aborted by " + who_ + " while " + whose + " was bringing it";
+    store_.note(std::move(cancelled));
     return abort_answer(true, "the change that " + whose + " was bringing is aborted");
   }
   return abort_answer(false, "nothing is being prepared");

@@ -19,6 +19,11 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
     upload_ = base::Bytes();
     upload_of_ = session_;
     upload_by_ = who_;
+    if (aborted_of_ == session_) aborted_.clear();
+  }
+  if (upload_.empty()) {
+    base::Status goes_on = check_not_aborted();
+    if (!goes_on.ok()) return goes_on.error();
   }
   if (upload_of_ != session_ && !upload_.empty()) return others_upload();
   if (upload_of_ != session_ || request.offset != upload_.size()) {
@@ -70,6 +75,10 @@ static base::Status check_edit(const ir::Image& running, const ir::Image& next, 
 // answer, makes sure that nobody switches what he did not stage. A rehearsal never takes its place.
 base::Result<base::Bytes> ControllerService::stage(const vm::Request& request) {
   if (upload_of_ != session_) return others_upload();
+  if (upload_.empty()) {
+    base::Status goes_on = check_not_aborted();
+    if (!goes_on.ok()) return goes_on.error();
+  }
   base::Bytes package = std::exchange(upload_, {});
   if (base::Status good = check_upload(request, package); !good.ok()) return good.error();
   if (auto revoked = admission_.revoke(package, wall_time_())) {

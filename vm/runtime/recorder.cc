@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <chrono>
 
 #include <cerrno>
 #include <cstring>
@@ -36,8 +37,8 @@ base::Result<std::unique_ptr<Recorder>> Recorder::create(const std::string& path
   struct stat info {};
   const bool plain = opened.valid() && ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
   // What is there is lost only when nothing is left that can be refused.
-  const bool kept = opened.valid() &&
-                    (!plain || (::fchmod(fd, 0600) == 0 && ::ftruncate(fd, 0) == 0));
+  const bool kept =
+      opened.valid() && (!plain || (::fchmod(fd, 0600) == 0 && ::ftruncate(fd, 0) == 0));
   std::FILE* file = kept ? ::fdopen(fd, "wb") : nullptr;
   if (file == nullptr) {
     return base::Error{base::Refusal::kFileUnwritable, path + ": " + std::strerror(errno)};
@@ -219,19 +220,39 @@ void Recorder::take_local() {
   work_.notify_one();
 }
 
+// What led to the end of a controller that dies is in the file, but for the last moment.
 void Recorder::write_to_file() {
+  constexpr std::chrono::milliseconds kFlush(100);
   base::Bytes batch;
   uint64_t size = 0;
+  auto flushed = std::chrono::steady_clock::now() - kFlush;
+  bool buffered = false;
   std::unique_lock lock(mutex_);
   while (!closing_ || !waiting_.empty()) {
-    work_.wait(lock, [&] { return closing_ || !waiting_.empty(); });
+    const auto come = [&] { return closing_ || !waiting_.empty(); };
+    if (!buffered) {
+      work_.wait(lock, come);
+    } else if (!work_.wait_until(lock, flushed + kFlush, come)) {
+      lock.unlock();
+      (void)std::fflush(file_);  // what fails here fails again where the rest is written
+      flushed = std::chrono::steady_clock::now();
+      buffered = false;
+      lock.lock();
+      continue;
+    }
     std::swap(batch, waiting_);
     lock.unlock();
     const bool room = size + batch.size() <= kMaxRecordingBytes;
     const bool written =
         room && !failed_ && std::fwrite(batch.data(), 1, batch.size(), file_) == batch.size();
     size += batch.size();
+    buffered = buffered || !batch.empty();
     batch.clear();
+    if (buffered && std::chrono::steady_clock::now() >= flushed + kFlush) {
+      (void)std::fflush(file_);
+      flushed = std::chrono::steady_clock::now();
+      buffered = false;
+    }
     if (!written && ended_early() == nullptr) ended_ = room ? kDiskFailed : kFull;
     lock.lock();
     failed_ = failed_ || !written;

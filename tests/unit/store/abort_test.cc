@@ -194,7 +194,7 @@ TEST_F(Aborted, C9_AnUploadIsAborted) {
   ASSERT_TRUE(ask_as(1, part).ok());
   ASSERT_TRUE(ask_as(2, {.command = Command::kAbort}).ok());
   part.offset = 100;
-  EXPECT_EQ(ask_as(1, part).error().refusal, Refusal::kProtocol);
+  EXPECT_EQ(ask_as(1, part).error().refusal, Refusal::kDeadline);
   const auto nothing = plc_.answer_to({.command = Command::kAbort});
   ASSERT_TRUE(nothing.ok());
   EXPECT_EQ(nothing->front(), 0) << "nothing is being prepared";
@@ -255,6 +255,35 @@ TEST_F(Aborted, C9_TheConditionEndsOneThatIsStaged) {
 TEST_F(Aborted, C9_TheConditionIsABoolOfTheRunningProgram) {
   EXPECT_EQ(stage(0, "P.n").error().refusal, Refusal::kBadValue);
   EXPECT_EQ(stage(0, "P.more").error().refusal, Refusal::kNoSuchVariable);
+}
+
+// While its parts come: whoever brings it is told that it was aborted, and by whom.
+TEST_F(Aborted, C9_WhileItsPartsCome) {
+  auto package =
+      online_change::make_package(plc_.controller().verified().encoded(), next_->encoded());
+  ASSERT_TRUE(package.ok());
+  const base::Bytes bytes = online_change::encode(*package);
+  const auto part = [&](uint64_t offset, uint64_t end) {
+    vm::Request upload{.command = Command::kUpload};
+    upload.offset = offset;
+    upload.data.assign(bytes.begin() + static_cast<ptrdiff_t>(offset),
+                       bytes.begin() + static_cast<ptrdiff_t>(end));
+    return ask_as(1, std::move(upload));
+  };
+  vm::Request stage{.command = Command::kStage};
+  stage.digest = base::sha256(bytes);
+  stage.flags = vm::kAllowLoss;
+  for (const bool all : {false, true}) {
+    ASSERT_TRUE(part(0, all ? bytes.size() : 100).ok());
+    ASSERT_TRUE(ask_as(2, {.command = Command::kAbort}).ok());
+    EXPECT_EQ(journal().back().event, online_change::Event::kCancelled);
+    const base::Status next = all ? ask_as(1, stage) : part(100, bytes.size());
+    ASSERT_FALSE(next.ok());
+    EXPECT_EQ(next.error().refusal, Refusal::kDeadline) << base::to_string(next.error());
+    EXPECT_NE(next.error().text.find("by user2"), std::string::npos) << next.error().text;
+  }
+  ASSERT_TRUE(part(0, bytes.size()).ok());  // and the next one works
+  EXPECT_TRUE(ask_as(1, stage).ok());
 }
 
 }  // namespace
