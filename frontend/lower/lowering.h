@@ -68,7 +68,7 @@ struct Lowering {
 
   Flow flow;
   // The current results of an instruction list, by number of the kResult.
-  std::unordered_map<uint32_t, ir::ValueId> result_values;
+  std::unordered_map<uint32_t, Typed> result_values;
   std::unordered_map<uint32_t, ir::Place> result_places;
   // Locals that messages of failed assertions are put together in.
   static constexpr uint32_t kNoLocal = 0xffffffffu;

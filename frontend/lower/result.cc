@@ -3,6 +3,7 @@
 #include "frontend/lower/assignments.h"
 #include "frontend/lower/current_results.h"
 #include "frontend/sema/expressions/expressions.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 
@@ -19,19 +20,20 @@ void CurrentResults::infer_results(Range32 list) {
 
 void CurrentResults::keep_result(const Stmt& stmt) {
   if (!ask<Expressions>().check_result(stmt)) return;
-  ir::TypeId type = infer(stmt.target).type;
+  const Note& note = infer(stmt.target);
+  const ir::TypeId type = note.type.valid() ? computed_type(sema_, note) : note.type;
   uint32_t number = tree_[stmt.target].number;
   bool single = !tree_.results[number].at_label && type.valid() && types().is_scalar(type);
   if (!single) {
     ask<Assignments>().assign_value(stmt.target, stmt.value, stmt.span);
   } else {
-    body_.result_values.emplace(number, value(stmt.value, type));
+    body_.result_values.emplace(number, Typed{value(stmt.value, type), type});
   }
 }
 
 ir::ValueId CurrentResults::emit_result(ExprId id) {
   auto found = body_.result_values.find(tree_[id].number);
-  if (found != body_.result_values.end()) return found->second;
+  if (found != body_.result_values.end()) return found->second.value;
   ir::Place from = place(id);
   return build_.load(from, scalar(from.type));
 }
@@ -42,7 +44,9 @@ ir::Place CurrentResults::result_place(const Expr& expr, ir::TypeId type) {
   if (found != body_.result_places.end()) return found->second;
   ir::Place local = temporary_place(type);
   if (auto value = body_.result_values.find(expr.number); value != body_.result_values.end()) {
-    build_.store(local, scalar(type), value->second);
+    const ir::ValueId kept =
+        code_.machine_convert(value->second.value, scalar(value->second.type), scalar(type));
+    build_.store(local, scalar(type), kept);
   } else {
     body_.result_places.emplace(expr.number, local);
   }

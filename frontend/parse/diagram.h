@@ -57,6 +57,7 @@ class Parser::Diagram {
   Range32 arguments(uint32_t number, const Element& element, Value* enable);
   void add_eno(uint32_t number, const Element& element);
   void add_outputs(uint32_t number, const Element& element);
+  bool is_right_below(uint32_t box, const Element& sink) const;
   const Element* only_sink(network::Link link) const;
   bool is_result(const Element& element, uint32_t output) const;
 

@@ -108,11 +108,19 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
     bool eno = ir::same_name(element.outputs[i].name, "ENO");
     if (eno || is_result(element, i) || outputs_[number][i].uses == 0) continue;
     const Element* to = only_sink({number, i});
-    if (to == nullptr) {
-      p_.note_only(Code::kOutputNeedsVariable, element.span,
-                   "the output `" + element.outputs[i].name + "` of `" + element.type.text +
-                       "` goes to more than one variable",
-                   "connect it with one variable, and use that elsewhere");
+    const bool late = to != nullptr && !is_right_below(number, *to);
+    if (to == nullptr || late) {
+      const std::string output =
+          "the output `" + element.outputs[i].name + "` of `" + element.type.text + "` ";
+      if (late) {
+        p_.note_only(Code::kOutputNeedsVariable, to->span,
+                     output + "is written by the call, so nothing may stand in between",
+                     "write this row right below the box, to a variable of its own");
+      } else {
+        p_.note_only(Code::kOutputNeedsVariable, element.span,
+                     output + "goes to more than one variable",
+                     "connect it with one variable, and use that elsewhere");
+      }
       Expr error;
       error.span = element.span;
       outputs_[number][i].kept = p_.add_expression(error);
@@ -127,6 +135,23 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
     done_[static_cast<size_t>(to - network_->elements.data())] = true;
     p_.arg_stack_.push_back(arg);
   }
+}
+
+// Is nothing done between the box and the variable behind its output but writing others of its
+// outputs, which does not change what variable that is?
+bool Parser::Diagram::is_right_below(uint32_t box, const Element& sink) const {
+  const auto end = static_cast<size_t>(&sink - network_->elements.data());
+  const std::string operand = ir::fold_name(sink.operand.text);
+  for (size_t i = box + 1; i < end; ++i) {
+    const Element& between = network_->elements[i];
+    if (between.kind == Kind::kSource) continue;
+    const bool of_box = between.kind == Kind::kSink && between.inputs[0].from.size() == 1 &&
+                        between.inputs[0].from[0].element == box;
+    if (!of_box || operand.find(ir::fold_name(between.operand.text)) != std::string::npos) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // The variable behind an output, when that is all it goes to and stores it as it is.

@@ -16,7 +16,9 @@ bool same_kind_of_string(const ir::TypeTable& types, ir::TypeId a, ir::TypeId b)
 Note Expressions::infer_result(const Expr& expr) {
   Note note;
   if (expr.operand.valid()) {
-    note.type = infer(expr.operand).type;
+    const Note& first = infer(expr.operand);
+    note.type = first.type;
+    note.width = first.width;
     return note;
   }
   const ir::TypeTable& types = sema_.program.types;
@@ -44,6 +46,8 @@ Note Expressions::infer_result(const Expr& expr) {
     return {};
   }
   note.type = without_range(types, best.type);
+  // Kept as a value it is as wide as it was computed; a local at a label has its type.
+  if (values.count == 1 && !sema_.tree.results[expr.number].at_label) note.width = best.width;
   if (ExprId target = sema_.tree.results[expr.number].target;
       target.valid() && best.flex != Flex::kNone) {
     ir::TypeId wanted = infer(target).type;
