@@ -22,8 +22,9 @@ TaskSlot* Scheduler::next_released() {
 TaskSlot* Scheduler::choose() {
   TaskSlot* running = active_.empty() ? nullptr : active_.back();
   TaskSlot* released = next_released();
-  const bool goes_on = running != nullptr && (released == nullptr || running->status.priority <=
-                                                                         released->status.priority);
+  const bool goes_on = running != nullptr &&
+                       (released == nullptr ||
+                        running->status.priority <= released->status.priority);
   if (goes_on && running->state == TaskState::kSuspended) resume(*running);
   if (goes_on || released == nullptr) return running;
   begin_task(*released);
