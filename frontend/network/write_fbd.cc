@@ -180,10 +180,25 @@ void Writer::find_kept() {
     auto [below, first] = next.try_emplace(ir::fold_name(element.operand.text), i);
     if (!first) again[i] = std::exchange(below->second, i);
   }
+  // By element: boxes up to it that may change any instance, by a method or a pointer.
+  std::vector<uint32_t> reaching(elements.size() + 1);
+  for (size_t i = 0; i < elements.size(); ++i) {
+    const Element& box = elements[i];
+    const bool reaches =
+        box.kind == Kind::kBlock && (box.type.text.find('.') != std::string::npos ||
+                                     box.operand.text.find('^') != std::string::npos);
+    reaching[i + 1] = reaching[i] + (reaches ? 1 : 0);
+  }
   for (const Element& element : elements) {
     for (const Input& input : element.inputs) {
       for (Link link : input.from) {
-        if (again[link.element] >= until[link.element]) continue;
+        const Element& box = elements[link.element];
+        const uint32_t end = until[link.element];
+        if (box.kind != Kind::kBlock || box.operand.empty() || end == 0) continue;
+        const bool moves = box.operand.text.find_first_of("[^") != std::string::npos &&
+                           written_[end] > written_[link.element] + 1;
+        const bool reached = reaching[end] > reaching[link.element + 1];
+        if (again[link.element] >= end && !moves && !reached) continue;
         kept_.try_emplace({link.element, link.output});
       }
     }

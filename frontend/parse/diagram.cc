@@ -32,6 +32,7 @@ std::string without_blanks(const std::string& operand) {
 }  // namespace
 
 void Parser::Diagram::run(const network::Body& body) {
+  ladder_ = body.language == network::Language::kLadder;
   check_wires(body);
   network::report_suspicious(body, p_.diagnostics_);
   for (const network::Network& each : body.networks) network(each);
@@ -85,7 +86,6 @@ void Parser::Diagram::count_uses() {
   done_.assign(count, false);
   joins_.clear();
   for (size_t i = 0; i < count; ++i) outputs_[i].resize(network_->elements[i].outputs.size());
-  std::map<std::string, uint32_t> calls;
   for (uint32_t i = 0; i < count; ++i) {
     const Element& element = network_->elements[i];
     for (const network::Input& input : element.inputs) {
@@ -95,15 +95,17 @@ void Parser::Diagram::count_uses() {
         output.user = i;
       }
     }
-    bool instance = element.kind == Kind::kBlock && !element.operand.empty();
-    if (instance) ++calls[ir::fold_name(element.operand.text)];
   }
-  called_again_.assign(count, false);
+  std::unordered_map<std::string, uint32_t> below;  // boxes, by folded instance
+  next_box_.assign(count, static_cast<uint32_t>(count));
   targets_.assign(count, 0);
   for (uint32_t i = static_cast<uint32_t>(count); i-- > 0;) {
     const Element& element = network_->elements[i];
     bool instance = element.kind == Kind::kBlock && !element.operand.empty();
-    if (instance) called_again_[i] = calls[ir::fold_name(element.operand.text)] > 1;
+    if (instance) {
+      const auto [box, last] = below.try_emplace(ir::fold_name(element.operand.text), i);
+      if (!last) next_box_[i] = std::exchange(box->second, i);
+    }
     targets_[i] = i;
     bool passes = element.kind == Kind::kContact || (element.kind == Kind::kBlock && !instance);
     for (size_t o = 0; passes && o < outputs_[i].size(); ++o) {

@@ -79,10 +79,11 @@ class Parser::Diagram {
   Tree& tree_;
   PouDecl& pou_;
   const network::Network* network_ = nullptr;
-  base::SourceSpan here_;           // the element that is made
-  uint32_t number_ = 0;             // the same, by number
-  std::vector<uint32_t> targets_;   // by element: the first after it that writes or calls
-  std::vector<bool> called_again_;  // blocks whose instance has several boxes in the network
+  base::SourceSpan here_;          // the element that is made
+  uint32_t number_ = 0;            // the same, by number
+  std::vector<uint32_t> targets_;  // by element: the first after it that writes or calls
+  bool ladder_ = false;
+  std::vector<uint32_t> next_box_;  // blocks: the next one of the same instance in the network
   std::vector<std::vector<Output>> outputs_;                            // by element and output
   std::map<std::vector<std::pair<uint32_t, uint32_t>>, ExprId> joins_;  // several links, kept
   std::vector<ExprId> conditions_;                      // by element: when its outputs are stored

@@ -43,11 +43,14 @@ void Parser::Diagram::block(uint32_t number, const Element& element) {
     stmt.value = value;
     emit(stmt, element.span);
   }
-  // Another box of the instance would change what this one has given.
-  for (uint32_t i = 0; called_again_[number] && i < element.outputs.size(); ++i) {
+  // Power is what the box has given, whatever happens to the instance behind it. What is named by
+  // the instance is read where it stands, unless another box of it comes first.
+  for (uint32_t i = 0; !element.operand.empty() && i < element.outputs.size(); ++i) {
     Output& output = outputs_[number][i];
-    if (output.uses == 0 || output.kept.valid()) continue;
-    ExprId now = member(parse(element.operand, true), element.outputs[i].name, element.span);
+    if (output.uses == 0 || output.user <= number || output.kept.valid()) continue;
+    if (!ladder_ && next_box_[number] >= output.user) continue;
+    const base::SourceSpan user = network_->elements[output.user].span;
+    ExprId now = member(parse(element.operand, true), element.outputs[i].name, user);
     output.kept = keep(now, element.span);
   }
   if (enable.expr.valid() && !enable.power) conditions_[number] = enable.expr;

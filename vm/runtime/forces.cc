@@ -16,6 +16,12 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
   ir::Symbol alone = force.symbol;
   alone.data = 0;
   std::string text = ir::format_value(from, alone, force.value);
+  // A whole REAL is what an integer may be, too.
+  const auto is_real = [](const ir::Type& type) {
+    return type.kind == ir::Kind::kReal || type.kind == ir::Kind::kLreal;
+  };
+  const bool to_whole = is_real(from.types[force.symbol.type]) && !is_real(to.types[symbol.type]);
+  if (to_whole && text.ends_with(".0")) text.resize(text.size() - 2);
   base::Result<base::Bytes> value = ir::parse_value(to, symbol, text);
   return value.ok() ? *value : base::Bytes{};
 }

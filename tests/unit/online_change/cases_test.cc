@@ -322,5 +322,28 @@ TEST(Cases, X1_case47_a_force_that_ends_is_a_loss) {
   EXPECT_EQ(plant.driver().arm(false).error().refusal, base::Refusal::kWouldLose);
 }
 
+// The value that is forced fits the other type exactly, so the force goes on.
+TEST(Cases, X1_case47_a_whole_real_stays_forced_as_an_integer) {
+  for (const char* type : {"INT", "LINT", "REAL", "LREAL", "USINT"}) {
+    Plant plant("PROGRAM Main VAR a : LREAL; END_VAR a := 1.0; END_PROGRAM");
+    ASSERT_TRUE(plant.controller().force("Main.a", "95").ok());
+    plant.run(1);
+    const std::string next =
+        std::string("PROGRAM Main VAR a : ") + type + "; END_VAR a := 1; END_PROGRAM";
+    plant.change(next, true);
+    plant.run(1);
+    EXPECT_EQ(plant.controller().forces().size(), 1u) << type;
+    EXPECT_EQ(std::stoi(plant.get("Main.a")), 95) << type;
+    plant.undo();
+    plant.run(1);
+    EXPECT_EQ(plant.get("Main.a"), "95.0") << type;
+  }
+  Plant plant("PROGRAM Main VAR a : LREAL; END_VAR a := 1.0; END_PROGRAM");
+  ASSERT_TRUE(plant.controller().force("Main.a", "2.5").ok());
+  plant.run(1);
+  plant.change("PROGRAM Main VAR a : INT; END_VAR a := 1; END_PROGRAM", true);
+  EXPECT_TRUE(plant.controller().forces().empty());
+}
+
 }  // namespace
 }  // namespace online_change
