@@ -56,7 +56,7 @@ base::Status ControllerService::make_oldest_permanent(size_t edits) {
   }
   base::Status accepted = change_.accept_oldest(edits);
   note_accepted(edits, next.digest(), {});
-  if (needs_stored_edits()) complain(keep_edits());
+  if (last_edit_boots() || trials_.size() > 1) complain(keep_edits());
   return accepted;
 }
 

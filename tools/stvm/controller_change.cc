@@ -211,8 +211,8 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
   if (!taken.ok()) return not_switched(taken.error());
   // Nothing runs that could be delayed.
   const bool allow_overrun = faulted || (request.flags & vm::kAllowOverrun) != 0;
-  Trial trial{describe_staged(), controller_.verified(), staged_package_, staged_flags_,
-              request.flags,     {}};
+  Trial trial{describe_staged(), controller_.verified(), staged_package_,
+              staged_flags_,     request.flags,          {}};
   // Whoever brings an edit again has no project that says so.
   if (!redone_.empty()) trial.switch_flags |= undone_.back().switch_flags & vm::kLastEditBoots;
   if (guard_.is_staged()) trial.switch_flags &= ~vm::kLastEditBoots;  // X6-08
@@ -321,7 +321,8 @@ void ControllerService::note_edit(Trial trial, const online_change::SwitchReport
   note_switch(online_change::Event::kSwitched, previous()->digest(), report, predicted_ns,
               "edit " + trials_.back().edit.name + (note_.empty() ? "" : ", " + note_) +
                   (trials_.back().signer ? ", signed by " + trials_.back().signer->by : ""));
-  if (needs_stored_edits()) complain(keep_edits());  // with the values of the boundary
+  if (last_edit_boots() || trials_.size() > 1)
+    complain(keep_edits());  // with the values of the boundary
 }
 
 }  // namespace stvm

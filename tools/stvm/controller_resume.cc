@@ -27,14 +27,10 @@ base::Status ControllerService::keep_edits(const Trial* next) {
   return store_.keep_edits(edits);
 }
 
-void ControllerService::begin(const std::vector<std::string>& alarms,
-                              const std::vector<online_change::ResumedEdit>& edits) {
-  start_.alarms = alarms;
-  resume(edits);
-}
-
 // From now on the policy of the edit counts again.
-void ControllerService::resume(const std::vector<online_change::ResumedEdit>& edits) {
+void ControllerService::resume(const std::vector<online_change::ResumedEdit>& edits,
+                               const std::vector<std::string>& alarms) {
+  start_.alarms.insert(start_.alarms.end(), alarms.begin(), alarms.end());
   base::Status adopted = base::Ok{};
   for (size_t i = 0; i < edits.size() && adopted.ok(); ++i) {
     const online_change::StoredEdit& stored = edits[i].stored;

@@ -61,12 +61,10 @@ class ControllerService : public vm::Service {
   void stand_between_cycles() { stands_ = true; }
   // Sets the log whose events are shown to those who ask; it must outlive this.
   void show_events(const EventLog& log) { events_ = &log; }
-  // Before anything is answered: what the start says is wrong, and resume().
-  void begin(const std::vector<std::string>& alarms,
-             const std::vector<online_change::ResumedEdit>& edits);
   // The trial of another process goes on (D4); before anything is answered. What cannot is an
-  // alarm, and its edits have no way back.
-  void resume(const std::vector<online_change::ResumedEdit>& edits);
+  // alarm, and its edits have no way back. `alarms`: further ones of the start.
+  void resume(const std::vector<online_change::ResumedEdit>& edits,
+              const std::vector<std::string>& alarms = {});
   // A clean end: at the next start what is on trial goes on, whatever the policy.
   void keep_trial_over_stop();
   // From now on an image that is staged is written to the store by a thread of its own, beside its
@@ -276,10 +274,8 @@ class ControllerService : public vm::Service {
   bool last_edit_boots() const {
     return !trials_.empty() && (trials_.back().switch_flags & vm::kLastEditBoots) != 0;
   }
-  // The store has one version to go back to; where there are more, or where the newest boots, it
-  // has the edits, too.
-  bool needs_stored_edits() const { return last_edit_boots() || trials_.size() > 1; }
-  // The edits on trial, with one that is switched next.
+  // The edits on trial, with one that is switched next. The store has one version to go back to:
+  // where there are more, or where the newest boots, it has the edits, too.
   base::Status keep_edits(const Trial* next = nullptr);
   // The program that runs, and the one that undo would bring back.
   base::Status keep_programs();

@@ -119,7 +119,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
   running_ = std::move(*running);
   service_ = std::make_unique<ControllerService>(
       controller(), clock, store_, mailbox_,
-      StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, kWho, trust_.get()});
+      StartReport{boot_->trial_lost, {}, boot_->fault, kWho, trust_.get()});
   service_->is_version(tools::kVersion);
   service_->store_beside();
   service_->show_events(*events_);
@@ -138,7 +138,7 @@ base::Status ServedResource::begin() {
   if (!stored.ok()) {
     return base::Error{stored.error().refusal, directory_ + ": " + stored.error().text};
   }
-  service_->begin(boot_->alarms, boot_->edits);
+  service_->resume(boot_->edits, boot_->alarms);
   return base::Ok{};
 }
 

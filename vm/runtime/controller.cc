@@ -201,17 +201,15 @@ base::Result<std::unique_ptr<ForceChange>> Controller::prepare_unforce(
 
 std::unique_ptr<ForceChange> Controller::renew_forces() const {
   const ForcedSet& forced = impl_->scheduler.tables().forced;
-  const uint64_t newest = impl_->running->code()->number.value;
-  if (forced.code == nullptr || forced.made_of == newest) return nullptr;
-  return impl_->prepare_forces(forced.forces);
+  const bool newest = forced.made_of == impl_->running->code()->number.value;
+  return forced.code == nullptr || newest ? nullptr : impl_->prepare_forces(forced.forces);
 }
 
 void Controller::use(ForceChange& change) {
   base::check(at_boundary(), "a variable is forced while a task is inside a scan");
   for (ForceChange::Row& row : change.rows) {
     const auto tables = impl_->tables.find(row.generation);
-    if (tables == impl_->tables.end()) continue;
-    tables->second->exchange_forces(row.set);
+    if (tables != impl_->tables.end()) tables->second->exchange_forces(row.set);
     if (row.generation == impl_->running.get()) impl_->scheduler.forces_exchanged(row.set);
   }
 }
