@@ -5,7 +5,10 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/bytecode/no_program.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/identities.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/part_edits.cc ${CMAKE_SOURCE_DIR}/base/pack.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/canonical_value.cc
-     ${CMAKE_SOURCE_DIR}/ir/bytecode/located_paths.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/located_*.cc ${CMAKE_SOURCE_DIR}/vm/runtime/own_outputs.cc
+     ${CMAKE_SOURCE_DIR}/vm/io/driver.cc ${CMAKE_SOURCE_DIR}/online_change/apply/live_value.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/io.cc ${CMAKE_SOURCE_DIR}/vm/runtime/clocks.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/shared_globals.cc
      ${CMAKE_SOURCE_DIR}/online_change/package/fleet_file.cc
      ${CMAKE_SOURCE_DIR}/vm/native/*.cc ${CMAKE_SOURCE_DIR}/vm/native/x64/*.cc
      ${CMAKE_SOURCE_DIR}/online_change/diff/*.cc ${CMAKE_SOURCE_DIR}/online_change/package/*.cc

@@ -100,31 +100,12 @@ class Booting {
   }
 
   void note(Event event, const base::Digest& from, const base::Digest& to, std::string text) {
-    steps_.push_back([&store = store_, row = entry(event, from, to, std::move(text))](Boot&) {
-      store.note(row);
-      return base::Status(base::Ok{});
-    });
+    steps_.push_back({BootStep::Kind::kNote, entry(event, from, to, std::move(text))});
   }
 
   // Those of the steps before, too.
   void note_alarms() {
-    steps_.push_back([&store = store_, row = entry(Event::kAlarm, {}, {}, {})](Boot& boot) {
-      for (const std::string& alarm : boot.alarms) {
-        JournalEntry one = row;
-        one.text = alarm;
-        store.note(std::move(one));
-      }
-      return base::Status(base::Ok{});
-    });
-  }
-
-  // What fails is an alarm, and the controller runs.
-  void try_to(base::Status (Store::*step)()) {
-    steps_.push_back([&store = store_, step](Boot& boot) {
-      const base::Status done = (store.*step)();
-      if (!done.ok()) boot.alarms.push_back(done.error().text);
-      return base::Status(base::Ok{});
-    });
+    steps_.push_back({BootStep::Kind::kAlarms, entry(Event::kAlarm, {}, {}, {})});
   }
 
   // Nothing was ever stored, as far as anybody can tell.
@@ -234,7 +215,7 @@ class Booting {
     boot.trial_lost = found_.trial_lost;
     // Noted first: a cut in between notes it twice, not never.
     if (boot.trial_lost) note(Event::kTrialLost, *boot.trial_lost, image.digest(), {});
-    try_to(&Store::settle);
+    steps_.push_back({BootStep::Kind::kSettle});
   }
 
   // What is given comes in place of a program that cannot be read: of the retained values, those
@@ -314,7 +295,7 @@ class Booting {
     next.alarms = std::move(boot.alarms);
     next.retained = initial_retained(next.image.image());
     take(values_on_trial(*all, next), next);
-    try_to(&Store::make_whole);
+    steps_.push_back({BootStep::Kind::kMakeWhole});
     boot = std::move(next);
     return true;
   }
@@ -323,21 +304,14 @@ class Booting {
   // that a cut in between finds them.
   void install(const ir::VerifiedImage& given, const std::optional<ir::VerifiedImage>& stored,
                Boot& boot) {
-    base::Bytes before;
     if (stored) {
-      before = std::move(boot.retained);
+      boot.before = stored->digest();
+      boot.values_before = std::move(boot.retained);
       boot.retained = initial_retained(given.image());
-      take(carry_retained(*stored, before, given), boot);
+      take(carry_retained(*stored, boot.values_before, given), boot);
     }
-    const base::Digest from = stored ? stored->digest() : base::Digest{};
-    steps_.push_back([&store = store_, given, from, has_before = stored.has_value(),
-                      before = std::move(before)](Boot& chosen) {
-      if (has_before && !store.retained_fits()) {
-        base::Status saved = store.save_retained(from, 0, before);
-        if (!saved.ok()) return saved;
-      }
-      return store.install({given.digest(), given.encoded()}, chosen.retained.size());
-    });
+    const base::Digest from = boot.before.value_or(base::Digest{});
+    steps_.push_back({BootStep::Kind::kInstall});
     note(Event::kInstalled, from, given.digest(), {});
     boot.image = given;
   }
@@ -346,7 +320,7 @@ class Booting {
   std::string who_;
   int64_t time_ns_;
   Recovered found_;
-  std::vector<Boot::Step> steps_;
+  std::vector<BootStep> steps_;
 };
 
 }  // namespace
@@ -356,10 +330,31 @@ base::Result<Boot> choose_boot(Store& store, const std::optional<ir::VerifiedIma
   return Booting(store, who, time_ns).run(given, create);
 }
 
-base::Status carry_out(Boot& boot) {
-  for (const Boot::Step& step : std::exchange(boot.steps, {})) {
-    base::Status done = step(boot);
-    if (!done.ok()) return done;
+static base::Status install(Store& store, const Boot& boot) {
+  if (boot.before && !store.retained_fits()) {
+    base::Status saved = store.save_retained(*boot.before, 0, boot.values_before);
+    if (!saved.ok()) return saved;
+  }
+  return store.install({boot.image.digest(), boot.image.encoded()}, boot.retained.size());
+}
+
+base::Status carry_out(Store& store, Boot& boot) {
+  for (BootStep& step : std::exchange(boot.steps, {})) {
+    base::Status done = base::Ok{};
+    if (step.kind == BootStep::Kind::kNote) store.note(std::move(step.row));
+    if (step.kind == BootStep::Kind::kAlarms) {
+      for (const std::string& alarm : boot.alarms) {
+        step.row.text = alarm;
+        store.note(step.row);
+      }
+    }
+    if (step.kind == BootStep::Kind::kSettle) done = store.settle();
+    if (step.kind == BootStep::Kind::kMakeWhole) done = store.make_whole();
+    if (step.kind == BootStep::Kind::kInstall) {
+      done = install(store, boot);
+      if (!done.ok()) return done;
+    }
+    if (!done.ok()) boot.alarms.push_back(done.error().text);
   }
   return base::Ok{};
 }
@@ -368,7 +363,7 @@ base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& gi
                         const std::string& who, int64_t time_ns, bool create) {
   base::Result<Boot> boot = choose_boot(store, given, who, time_ns, create);
   if (!boot.ok()) return boot;
-  base::Status done = carry_out(*boot);
+  base::Status done = carry_out(store, *boot);
   if (!done.ok()) return done.error();
   return boot;
 }

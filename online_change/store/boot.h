@@ -3,7 +3,6 @@
 // carried out.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,18 @@
 #include "online_change/store/store.h"
 
 namespace online_change {
+
+struct BootStep {
+  enum class Kind : uint8_t {
+    kNote,       // `row`
+    kAlarms,     // all alarms so far, as rows like it
+    kSettle,     // the trial is over
+    kMakeWhole,  // copies that are missing
+    kInstall,    // the image boots from now on
+  };
+  Kind kind = Kind::kNote;
+  JournalEntry row = {};
+};
 
 struct Boot {
   ir::VerifiedImage image;
@@ -25,9 +36,11 @@ struct Boot {
   std::string fault = {};
   // Not empty: `image` is the newest of these, oldest first, and on trial.
   std::vector<ResumedEdit> edits = {};
-  // What has to be stored before it runs, and the rows of the journal. They refer to the store.
-  using Step = std::function<base::Status(Boot&)>;
-  std::vector<Step> steps = {};
+  // What has to be stored before it runs, and rows of the journal, in order.
+  std::vector<BootStep> steps = {};
+  // For kInstall: the program that was stored, and its retained values. No digest: there was none.
+  std::optional<base::Digest> before = {};
+  base::Bytes values_before = {};
 };
 
 // `given` replaces what is stored; the retained values follow by path and type. kFileNotFound when
@@ -37,7 +50,7 @@ base::Result<Boot> choose_boot(Store& store, const std::optional<ir::VerifiedIma
                                const std::string& who, int64_t time_ns, bool create = false);
 // Its steps. kStorageFailed when what was given cannot be stored; what else fails is an alarm.
 // Notes in the journal what it did, at the time of the choice.
-base::Status carry_out(Boot& boot);
+base::Status carry_out(Store& store, Boot& boot);
 // Both.
 base::Result<Boot> boot(Store& store, const std::optional<ir::VerifiedImage>& given,
                         const std::string& who, int64_t time_ns, bool create = false);

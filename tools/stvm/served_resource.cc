@@ -134,7 +134,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
 }
 
 base::Status ServedResource::begin() {
-  base::Status stored = online_change::carry_out(*boot_);
+  base::Status stored = online_change::carry_out(store_, *boot_);
   if (!stored.ok()) {
     return base::Error{stored.error().refusal, directory_ + ": " + stored.error().text};
   }
