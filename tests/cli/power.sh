@@ -174,9 +174,6 @@ expect 0 stvm stop --dir waiting
 # A disk without room: refused, and what ran runs on.
 stc build v1.st -o v1.img 2>/dev/null
 serve plc
-(
-  ulimit -f 1
-  "$bin/stvm" serve --dir full v1.img >full.log 2>&1
-) && fail "no room, and it runs"
-grep -q 'R0409' full.log || fail "$(cat full.log)"
+text=$( (ulimit -f 1; exec "$bin/stvm" serve --dir full v1.img) 2>&1) && fail "no room, and it runs"
+printf '%s\n' "$text" | grep -q 'R0409' || fail "$text"
 expect 0 stvm stop --dir plc
