@@ -227,35 +227,31 @@ void Recorder::write_to_file() {
   uint64_t size = 0;
   auto flushed = std::chrono::steady_clock::now() - kFlush;
   bool buffered = false;
+  const auto come = [&] { return closing_ || !waiting_.empty(); };
   std::unique_lock lock(mutex_);
   while (!closing_ || !waiting_.empty()) {
-    const auto come = [&] { return closing_ || !waiting_.empty(); };
-    if (!buffered) {
+    if (buffered) {
+      work_.wait_until(lock, flushed + kFlush, come);
+    } else {
       work_.wait(lock, come);
-    } else if (!work_.wait_until(lock, flushed + kFlush, come)) {
-      lock.unlock();
-      (void)std::fflush(file_);  // what fails here fails again where the rest is written
-      flushed = std::chrono::steady_clock::now();
-      buffered = false;
-      lock.lock();
-      continue;
     }
     std::swap(batch, waiting_);
     lock.unlock();
     const bool room = size + batch.size() <= kMaxRecordingBytes;
-    const bool written =
+    bool written =
         room && !failed_ && std::fwrite(batch.data(), 1, batch.size(), file_) == batch.size();
     size += batch.size();
     buffered = buffered || !batch.empty();
     batch.clear();
-    if (buffered && std::chrono::steady_clock::now() >= flushed + kFlush) {
-      (void)std::fflush(file_);
+    if (written && buffered && std::chrono::steady_clock::now() >= flushed + kFlush) {
+      written = std::fflush(file_) == 0;
       flushed = std::chrono::steady_clock::now();
       buffered = false;
     }
     if (!written && ended_early() == nullptr) ended_ = room ? kDiskFailed : kFull;
     lock.lock();
     failed_ = failed_ || !written;
+    buffered = buffered && !failed_;
   }
 }
 
