@@ -143,7 +143,9 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
 // Is nothing done between the box and the variable behind its output but writing others of its
 // outputs, which does not change what variable that is?
 bool Parser::Diagram::is_right_below(uint32_t box, const Element& sink) const {
+  constexpr size_t kMostRows = 256;  // looked at for each output
   const auto end = static_cast<size_t>(&sink - network_->elements.data());
+  if (end > box + kMostRows) return false;
   const std::string operand = ir::fold_name(sink.operand.text);
   for (size_t i = box + 1; i < end; ++i) {
     const Element& between = network_->elements[i];

@@ -36,8 +36,8 @@ class Maker:
                 self.actions.append((kind, name))
         others = []
         if self.chance(0.6):  # an action of the standard, which has a final scan
-            others = [(f"iec_{name}", "N")]
-            self.actions.append(("iec", name))
+            others = [(f"iec_{name}", "N"), (f"early_{name}", "N")]  # by name the second one is first
+            self.actions += [("iec", name), ("early", name)]
         elements.append(step(name, *others, **own))
         self.enter(open_, name)
         return "steps", [name]
@@ -133,8 +133,9 @@ def simulation(maker, bodies):
     run("exit", "left_*")
     run("entry", "came_*")
     run("main", "on_*")
-    run("iec", "was_* AND NOT on_*", str)
-    run("iec", "on_*", str)
+    for condition in ("was_* AND NOT on_*", "on_*"):
+        run("early", condition, str)
+        run("iec", condition, str)
     flags = ", ".join(f"{flag}_{name}" for name in maker.steps for flag in ("on", "was", "left", "came"))
     return (f"PROGRAM MAIN\nVAR\n  n : INT;\n  sum : UDINT;\n  started, {flags} : BOOL;\nEND_VAR\n" +
             "\n".join(lines) + "\nEND_PROGRAM\n")

@@ -367,6 +367,27 @@ TEST(Resume, X5_case77_ValuesOfALostTrialComeBackEditByEdit) {
   EXPECT_EQ(plc.get("a"), "70000");  // nobody wrote it since it was narrowed
 }
 
+// Wherever the cut comes around the second edit.
+TEST(Resume, X5_case77_ACutAroundTheSecondEditLosesNoValue) {
+  Outage rig(0);
+  rig.change(1);
+  rig.plc.set("gone", "55");
+  ASSERT_TRUE(rig.plc.save().ok());
+  std::vector<sim::SimStorage> left;
+  rig.disk.before_call = [&] { left.push_back(behind_cut(rig.disk)); };
+  rig.change(2);
+  ASSERT_TRUE(rig.plc.save().ok());
+  rig.disk.before_call = nullptr;
+  size_t lost = 0;
+  for (sim::SimStorage& disk : left) {
+    Plc plc(disk);
+    ASSERT_TRUE(plc.boot().ok());
+    if (plc.status().trial_lost == rig.digests[2]) ++lost;
+    EXPECT_EQ(plc.get("gone"), "55");
+  }
+  EXPECT_GT(lost, 1u);
+}
+
 TEST(Resume, X5_case77_ValuesOfALostTrialComeBackThroughNewNames) {
   const auto with = [](const std::string& variable) {
     return "VAR_GLOBAL RETAIN " + variable +
