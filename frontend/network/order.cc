@@ -173,6 +173,21 @@ std::vector<uint32_t> sequence_of(const Network& network, const Graph& graph,
   return out;
 }
 
+// What has no order of its own, as a contact, is read for the first that has one and needs it.
+void inherit_orders(const Graph& graph, const std::vector<uint32_t>& sequence,
+                    std::vector<Key>& keys) {
+  for (auto from = sequence.rbegin(); from != sequence.rend(); ++from) {
+    uint32_t& order = std::get<0>(keys[*from]);
+    if (order != 0) continue;
+    uint32_t least = kNoNode;
+    for (Graph::Edge edge : graph.behind(*from)) {
+      const uint32_t needed = std::get<0>(keys[edge.to]);
+      if (needed != 0) least = std::min(least, needed);
+    }
+    if (least != kNoNode) order = least;
+  }
+}
+
 }  // namespace
 
 std::vector<uint32_t> order(Network& network, std::span<const Precedence> precedences) {
@@ -185,8 +200,10 @@ std::vector<uint32_t> order(Network& network, std::span<const Precedence> preced
   graph.cut(false, keys);
   graph.cut(true, keys);
   std::vector<uint32_t> loop = graph.loop();
-  if (loop.empty()) renumber(network, sequence_of(network, graph, keys));
-  return loop;
+  if (!loop.empty()) return loop;
+  inherit_orders(graph, sequence_of(network, graph, keys), keys);
+  renumber(network, sequence_of(network, graph, keys));
+  return {};
 }
 
 }  // namespace frontend::network

@@ -30,8 +30,9 @@ struct Part {
 std::vector<Part> split(const Network& all, std::span<const Precedence> precedences);
 
 // Puts the elements of one network into the order of execution: where Element::order is given, by
-// it; where data flows, along it; otherwise from top to bottom, then from left to right, and what a
-// box gives to a variable right after the box. Loops are cut where the output of a function block
+// it, and what has none in front of the first that needs it; where data flows, along it; otherwise
+// from top to bottom, then from left to right, and what a box gives to a variable right after the
+// box. Loops are cut where the output of a function block
 // instance leads back: upwards in the drawing if it does. Gives the elements, by their numbers in
 // `network`, of a loop that has no such output; `network` stays as it was then.
 std::vector<uint32_t> order(Network& network, std::span<const Precedence> precedences);

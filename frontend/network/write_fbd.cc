@@ -347,7 +347,9 @@ Value Writer::value(Link link) {
 
 Value Writer::with(Value value, Modifier modifier) {
   if (modifier == Modifier::kNone) return value;
-  if (value.modifier == Modifier::kNone) {
+  // An edge of power at the rail is one of a wire: constants have none.
+  const bool rail = value.steady && (value.text == "TRUE" || value.text == "FALSE");
+  if (value.modifier == Modifier::kNone && (modifier == Modifier::kNegated || !rail)) {
     value.modifier = modifier;
     return value;
   }

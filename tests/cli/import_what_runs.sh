@@ -153,3 +153,29 @@ said 'error\[E1083\]: POU P: the worksheets of P are in two languages'
 project tc6_0200 "$(pou P program "<localVars><variable name=\"u\"><type><derived name=\"U\"/></type></variable></localVars>" "$(st 'u.w := 258;')")" \
   "$none<addData><data name=\"$vendor/union\" handleUnknown=\"implementation\"><union name=\"U\">$(variable w WORD)<variable name=\"b\"><type><array><dimension lower=\"0\" upper=\"1\"/><baseType><BYTE/></baseType></array></type></variable></union></data></addData>" >union.xml
 runs union.xml 1 'P.u.b[0]=16#02' 'P.u.b[1]=16#01'
+
+# --- a contact is read after the coils of the branches above it; power at the rail has an edge
+cat >coils.st <<'S'
+PROGRAM P
+VAR a : BOOL := TRUE; b, c : BOOL; END_VAR
+LADDER
+  |--[ a ]--+--( b )---------|
+  |         |
+  |         +--[ b ]--( c )--|
+END_LADDER
+END_PROGRAM
+S
+needs_xml stc export coils.st -o coils.xml --without-sources
+expect 0 stc import coils.xml -o coils
+grep -q LADDER coils/P.st || fail "no ladder: $(cat coils/P.st)"
+runs coils.st 1 P.c=TRUE
+runs coils 1 P.c=TRUE
+edge() { printf '<coil localId="%s" executionOrderId="%s" edge="rising">%s%s<variable>%s</variable></coil>' "$1" "$2" "$(place 50 "$3")" "$(from 1)" "$4"; }
+pin() { printf '<variable formalParameter="%s">%s</variable>' "$1" "$(from 1)"; }
+ladder="<leftPowerRail localId=\"1\">$(place 10 10)<connectionPointOut formalParameter=\"\"/></leftPowerRail>$(edge 2 1 10 b)
+<block localId=\"3\" typeName=\"TON\" instanceName=\"t\" executionOrderId=\"2\">$(place 50 50)<inputVariables>$(pin EN)$(pin IN)</inputVariables><inOutVariables/><outputVariables/></block>"
+project tc6_0201 "$(pou P program "<localVars>$(variable b BOOL)$(variable n INT)<variable name=\"t\"><type><derived name=\"TON\"/></type></variable></localVars>" "<body><LD>$ladder</LD></body>")" "$only" >rail.xml
+expect 0 stc import rail.xml -o rail
+said 'the ladder became FBD: power arrives at several pins of `t`'
+runs rail 1 P.b=TRUE
+runs rail 2 P.b=FALSE
