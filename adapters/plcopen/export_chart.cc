@@ -2,6 +2,7 @@
 // and the farthest, a column for every branch. What leads upwards is a jump.
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <queue>
 
 #include "adapters/plcopen/writer.h"
@@ -25,6 +26,7 @@ class ChartWriter {
 
   void run() {
     find_rows();
+    find_priorities();
     for (size_t i = 0; i < chart_.transitions.size(); ++i) leave(i);
     for (size_t i = 0; i < chart_.transitions.size(); ++i) enter(i);
     for (size_t i = 0; i < chart_.steps.size(); ++i) step(i);
@@ -80,6 +82,44 @@ class ChartWriter {
     for (size_t i = 0; i < count; ++i) column_[i] = used[row_[i]]++;
   }
 
+  // Readers take alternatives from left to right, which says nothing where one of them leaves
+  // several steps: all that compete with it have a priority then.
+  void find_priorities() {
+    std::vector<size_t> group(chart_.steps.size() + 1);  // by step: another step of it, or itself
+    std::iota(group.begin(), group.end(), size_t{0});
+    const auto group_of = [&](const frontend::Name& step) {
+      size_t at = step_of(step);
+      while (group[at] != at) at = group[at] = group[group[at]];
+      return at;
+    };
+    for (const frontend::ChartTransition& transition : chart_.transitions) {
+      for (const frontend::Name& from : transition.from) {
+        group[group_of(from)] = group_of(transition.from[0]);
+      }
+    }
+    std::map<size_t, std::vector<size_t>> competing;  // transitions, by group
+    for (size_t i = 0; i < chart_.transitions.size(); ++i) {
+      const std::vector<frontend::Name>& from = chart_.transitions[i].from;
+      if (!from.empty()) competing[group_of(from[0])].push_back(i);
+    }
+    for (auto& [step, transitions] : competing) {
+      const auto any = [&](auto&& has) {
+        return std::any_of(transitions.begin(), transitions.end(),
+                           [&](size_t i) { return has(chart_.transitions[i]); });
+      };
+      const bool several = any([](const auto& each) { return each.from.size() > 1; });
+      const bool silent = any([](const auto& each) { return !each.has_priority; });
+      if (!several || !silent || transitions.size() == 1) continue;
+      const auto rank = [&](size_t i) {
+        const frontend::ChartTransition& each = chart_.transitions[i];
+        return each.has_priority ? uint64_t{each.priority} : uint64_t{1} << 32;
+      };
+      std::stable_sort(transitions.begin(), transitions.end(),
+                       [&](size_t a, size_t b) { return rank(a) < rank(b); });
+      for (size_t i = 0; i < transitions.size(); ++i) priority_[transitions[i]] = i + 1;
+    }
+  }
+
   Node element(const char* name, uint32_t x, uint32_t y) {
     Node node = sfc_.append_child(name);
     node.append_attribute("localId") = ++ids_;
@@ -124,7 +164,12 @@ class ChartWriter {
     }
     Node node = element("transition", x, 50 + kRow * row + 60);
     transition_id_.push_back(ids_);
-    if (transition.has_priority) node.append_attribute("priority") = transition.priority;
+    const auto given = priority_.find(number);
+    if (given != priority_.end()) {
+      node.append_attribute("priority") = given->second;
+    } else if (transition.has_priority) {
+      node.append_attribute("priority") = transition.priority;
+    }
     if (!from.empty()) hang(node, from[0]);
     bool list = false;
     const std::string text = writer_.condition_of(transition, list);
@@ -213,6 +258,7 @@ class ChartWriter {
   std::vector<uint32_t> divergence_;          // id below a step; 0: none
   std::vector<std::vector<uint32_t>> above_;  // ids that lead to a step directly
   std::vector<uint32_t> transition_id_;
+  std::map<size_t, size_t> priority_;  // of transitions that need one
 };
 
 void Writer::chart(Node body, const frontend::Chart& chart) {

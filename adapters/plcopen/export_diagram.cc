@@ -336,7 +336,8 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
     out.append_attribute("width") = element.position.width;
     out.append_attribute("height") = element.position.height;
   }
-  if (acts(element.kind)) out.append_attribute("executionOrderId") = ++order_;
+  const bool reads = element.kind == Kind::kContact;  // others read contacts when a coil needs them
+  if (acts(element.kind) || reads) out.append_attribute("executionOrderId") = ++order_;
   if (!inline_negation) put_modifier(out, modifier);
   if (element.kind == Kind::kJump) out.append_attribute("label") = element.operand.text.c_str();
   if (element.kind == Kind::kBlock) {

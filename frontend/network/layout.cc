@@ -47,6 +47,8 @@ class Placer {
   Extent series(const Series& items, Start start);
   Extent parts(const Item& item, Start start);
   size_t right_run(const Series& items) const;
+  bool has_coil(const Series& items) const;
+  bool has_coil_below(const Item& item) const;
   void cell(uint32_t element, uint32_t row, uint32_t column, bool at_right);
   void wire(uint32_t row, uint32_t from, uint32_t to, bool from_rail);
   Count count() const { return {out_.cells.size(), out_.wires.size(), out_.joints.size()}; }
@@ -89,6 +91,26 @@ bool joins_to_end(const Series& items) {
                                           [](const Item& item) { return item.branches.empty(); });
 }
 
+bool Placer::has_coil(const Series& items) const {
+  return std::any_of(items.begin(), items.end(), [&](const Item& item) {
+    return item.branches.empty()
+               ? network_.elements[item.element].kind == Kind::kCoil
+               : std::any_of(item.branches.begin(), item.branches.end(),
+                             [&](const Series& branch) { return has_coil(branch); });
+  });
+}
+
+// Is there a coil in a row below the first? From the left rail on that row would look like a rung
+// of its own (E1050).
+bool Placer::has_coil_below(const Item& item) const {
+  for (size_t i = 1; i < item.branches.size(); ++i) {
+    if (has_coil(item.branches[i])) return true;
+  }
+  return !item.branches.empty() &&
+         std::any_of(item.branches[0].begin(), item.branches[0].end(),
+                     [&](const Item& inside) { return has_coil_below(inside); });
+}
+
 Placer::Extent Placer::series(const Series& items, Start start) {
   Extent extent{1, start.column};
   size_t right = start.ends ? right_run(items) : 0;
@@ -102,7 +124,9 @@ Placer::Extent Placer::series(const Series& items, Start start) {
       continue;
     }
     // Branches that begin at the rail and meet again have rows of their own there.
-    bool at_rail = i == 0 && start.at_rail && !item.end;
+    const bool coils =
+        has_coil_below(item) || (i + 1 < left && !items[i + 1].end && has_coil_below(items[i + 1]));
+    bool at_rail = i == 0 && start.at_rail && !item.end && !coils;
     if (i == 1 && start.at_rail && joins_to_end(items)) {
       out_.columns = std::max(out_.columns, ++extent.column);
     }
