@@ -287,10 +287,14 @@ ExprId Parser::Diagram::edge(ExprId value, Modifier modifier, const std::string&
   return seen;
 }
 
-// What is compared, and what the edge acts on: both stay when rungs come and go around it.
+// What is compared, and what the edge acts on: both stay when rungs come and go around it. A block
+// has those of its base besides its own, which begin with its name.
 Name Parser::Diagram::memory(const std::string& of, Modifier modifier, base::SourceSpan span) {
   std::string text;
-  if (pou_.kind == PouKind::kAction) text = std::string(pou_.name.text) + '.';
+  const bool action = pou_.kind == PouKind::kAction;
+  const PouDecl& holder = action && p_.member_of_ != nullptr ? *p_.member_of_ : pou_;
+  if (!holder.extends.empty()) text = std::string(holder.name.text) + '.';
+  if (action) text += std::string(pou_.name.text) + '.';
   text += without_blanks(of) + (modifier == Modifier::kRising ? "#rising" : "#falling");
   const Element& target = network_->elements[targets_[number_]];
   bool acts = target.kind == Kind::kCoil || target.kind == Kind::kSink ||

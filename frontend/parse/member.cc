@@ -56,7 +56,9 @@ void Parser::parse_member(PouDecl& owner, Range32 attributes) {
   auto open = open_;
   open_.fill(0);
   open_[static_cast<uint8_t>(TokenKind::kEndInterface)] = owner.kind == PouKind::kInterface ? 1 : 0;
+  member_of_ = &owner;
   PouDecl pou = parse_pou(member, attributes);
+  member_of_ = nullptr;
   open_ = open;
   pou.scope = owner.scope;
   move_memory(pou, owner);

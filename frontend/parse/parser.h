@@ -356,8 +356,9 @@ class Parser {
   uint32_t depth_ = 0;
   size_t next_pragma_ = 0;
   ScopeId scope_;
-  uint32_t owner_ = kNoOwner;         // the POU that a member after it belongs to
-  std::array<uint16_t, 256> open_{};  // open statements, by the TokenKind of their end
+  uint32_t owner_ = kNoOwner;           // the POU that a member after it belongs to
+  const PouDecl* member_of_ = nullptr;  // the owner of what parse_member() reads
+  std::array<uint16_t, 256> open_{};    // open statements, by the TokenKind of their end
 
   // Lists under construction; nested constructs work above their opener's mark.
   std::vector<ExprId> expr_stack_;

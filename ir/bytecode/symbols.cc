@@ -138,7 +138,11 @@ class PathReader {
   }
 
   base::Status read_member(Symbol& symbol) {
-    const std::string_view text = name();
+    // What an edge remembers is called after an operand, which may be a path.
+    const std::string_view rest = path_.substr(at_);
+    const bool edge = rest.find('#') != rest.npos && names_.find_member(symbol.type, rest) >= 0;
+    const std::string_view text = edge ? rest : name();
+    if (edge) at_ = path_.size();
     if (!image_.types.has_members(symbol.type)) {
       return fail("`" + image_.types.text(symbol.type) + "` has no members");
     }

@@ -94,3 +94,20 @@ expect 7 at unforce 'Line1.pumps[*].run'
 said 'R0401: no forced variable matches'
 expect 0 at unforce %IX0.0
 expect 0 at stop
+
+# What an edge remembers has a name as well, dots and brackets of its operand included.
+cat >edges.st <<'ST'
+FUNCTION_BLOCK Counts
+VAR n : ARRAY[0..1] OF INT; t : TON; END_VAR
+LADDER
+  |--[P t.Q ]--[ n[1] := ADD(n[1], 1) ]--|
+END_LADDER
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR c : Counts; k : BOOL; END_VAR
+  c(); k := TRUE;
+END_PROGRAM
+ST
+expect 0 stvm run edges.st --scans 2 --virtual-time --print 'Main.c.t.Q#rising#n[1]' --print 'main.C.T.q#RISING#N[1]'
+expect 7 stvm run edges.st --scans 2 --virtual-time --print 'Main.c.t.Q#falling#n[1]'
+said 'R0401: `Main.c.t.Q#falling#n\[1\]`: `Q#falling#n` is no member'
