@@ -1,4 +1,6 @@
 // Boxes of a diagram: calls of functions and function blocks.
+#include <optional>
+
 #include "frontend/parse/diagram.h"
 #include "ir/types/types.h"
 
@@ -68,11 +70,13 @@ ExprId Parser::Diagram::callee(const Element& element) {
 
 Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Value* enable) {
   std::vector<Arg> args;
+  std::optional<Arg> en;  // stands behind the others, which may have no names
   for (const network::Input& each : element.inputs) {
     Value value = input(each);
     base::SourceSpan span = each.span.begin.valid() ? each.span : here_;
     if (!value.expr.valid()) continue;
-    if (ir::same_name(each.name, "EN")) {
+    const bool enables = ir::same_name(each.name, "EN");
+    if (enables) {
       if (value.power) continue;  // always
       value.expr = keep(value.expr, span);
       *enable = value;
@@ -82,8 +86,13 @@ Range32 Parser::Diagram::arguments(uint32_t number, const Element& element, Valu
     arg.span = span;
     if (!each.name.empty()) arg.name = {made(each.name), span};
     arg.value = value.expr;
-    args.push_back(arg);
+    if (enables && !en) {
+      en = arg;
+    } else {
+      args.push_back(arg);
+    }
   }
+  if (en) args.push_back(*en);
   size_t mark = p_.arg_stack_.size();
   for (const Arg& arg : args) p_.arg_stack_.push_back(arg);
   add_eno(number, element);

@@ -179,8 +179,10 @@ Note Calls::infer_call(const Expr& expr) {
   const PouInfo& function = sema_.declared.pous[target.pou];
   note.calls = true;
   if (!function.result.valid()) {
-    error(DiagnosticCode::kNoResult, expr.span, quoted(function.decl->name) + " has no result",
-          "call it in a statement of its own, or give it a result type");
+    error(
+        DiagnosticCode::kNoResult, expr.span, quoted(function.decl->name) + " has no result",
+        "call it in a statement of its own, or give it a result type; a box of a ladder without a "
+        "result has `EN:=_` and `ENO=>_`");
     return {};
   }
   note.type = resolve(function.result).type;
