@@ -70,11 +70,11 @@ minimal: setup
 	@cmake --build build/minimal -j $(JOBS)
 	@ctest --test-dir build/minimal --output-on-failure -j $(TEST_JOBS) $(if $(TESTS),-R '$(TESTS)') $(if $(EXCEPT),-E '$(EXCEPT)')
 
-# Of these those that are scripts, and no more is built than they run.
+# Of these those that are scripts, or TESTS of them, and no more is built than they run.
 minimal-scripts: setup
 	@cmake --preset minimal >/dev/null
 	@cmake --build build/minimal -j $(JOBS) --target for_scripts
-	@ctest --test-dir build/minimal --output-on-failure -j $(TEST_JOBS) -R '^(cli|meta)_' $(if $(EXCEPT),-E '$(EXCEPT)')
+	@ctest --test-dir build/minimal --output-on-failure -j $(TEST_JOBS) -R '$(or $(TESTS),^(cli|meta)_)' $(if $(EXCEPT),-E '$(EXCEPT)')
 
 # Every invariant is checked, those of hot loops too (base/check.h).
 hard: setup
@@ -96,7 +96,7 @@ asan asan-clang ubsan: setup
 
 empty :=
 one_of = ($(subst $(empty) ,|,$(1)))
-MEMORY := exec native runtime io resources exchange online_change references store fleet workspace
+MEMORY := exec native runtime io online_change store workspace
 asan-memory: setup
 	@cmake --preset asan >/dev/null
 	@cmake --build build/asan -j $(JOBS) --target $(MEMORY:%=test_%) golden fuzz_targets

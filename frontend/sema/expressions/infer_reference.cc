@@ -132,10 +132,10 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
           "__NEW(Ten)");
     return {};
   }
-  bool given = expr.list.count == wanted;
+  bool given = plain_arguments(expr, nullptr).size() == wanted;  // EN and ENO stand behind them
   for (uint32_t i = 0; i < wanted && given; ++i) {
     const Arg& arg = sema_.tree.args[expr.list.first + i];
-    given = arg.value.valid() && !arg.output;
+    given = arg.value.valid() && !arg.output && !is_enable(arg, nullptr);
   }
   if (!given) {
     error(DiagnosticCode::kWrongArgumentCount, expr.span,
@@ -145,6 +145,7 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   }
   const ExprId argument = sema_.tree.args[expr.list.first].value;
   Note note;
+  mark_enabled(expr, note);
   if (call == ReferenceCall::kNew) return ask<Pools>().infer_new(argument);
   if (call == ReferenceCall::kSizeof) {
     const ir::TypeId type = type_of_argument(argument);
@@ -164,7 +165,7 @@ Note Calls::infer_reference_call(const Expr& expr, ReferenceCall call) {
   const Note& operand = infer(argument);
   if (!operand.type.valid()) return {};
   if (call == ReferenceCall::kDelete) return ask<Pools>().infer_delete(argument);
-  note.calls = operand.calls;
+  note.calls = note.calls || operand.calls;
   note.can_trap = operand.can_trap;
   switch (call) {
     case ReferenceCall::kQuery:
