@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tests/unit/sanitized.h"
 #include "tests/unit/store/history.h"
-#include "tests/unit/store/sanitized.h"
 
 namespace history {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
+#include "tests/unit/sanitized.h"
 #include "tests/unit/store/history.h"
-#include "tests/unit/store/sanitized.h"
 
 namespace history {
 namespace {

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <random>
 
+#include "tests/unit/sanitized.h"
 #include "tests/unit/store/lives.h"
-#include "tests/unit/store/sanitized.h"
 #include "tests/unit/store/sim_storage.h"
 #include "vm/runtime/file_storage.h"
 

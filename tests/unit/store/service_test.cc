@@ -4,8 +4,8 @@
 
 #include <random>
 
+#include "tests/unit/sanitized.h"
 #include "tests/unit/store/lives.h"
-#include "tests/unit/store/sanitized.h"
 #include "tests/unit/store/sim_storage.h"
 
 namespace plc {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "tests/unit/sanitized.h"
 #include "tests/unit/workspace/edited_project.h"
 
 namespace {
@@ -267,14 +268,15 @@ TEST(Edits, TenThousandEditsKeepTheirMemory) {
   sources.add("main.st", kMain);
   const std::string before = kBlocks;
   const size_t at = before.find("Step + 1");
+  constexpr int kEdits = 10'000 / kOneOf;
   size_t after_some = 0;
-  for (int edit = 0; edit < 10'000; ++edit) {
+  for (int edit = 0; edit < kEdits; ++edit) {
     std::string text = before;
     sources.replace(0, text.replace(at, 8, "Step + " + std::to_string(edit % 97)));
     base::Diagnostics diagnostics;
     ASSERT_TRUE(build.build(sources, diagnostics).ok());
-    if (edit == 2'000) after_some = mallinfo2().uordblks;
-    if (edit <= 2'000) continue;
+    if (edit == kEdits / 5) after_some = mallinfo2().uordblks;
+    if (edit <= kEdits / 5) continue;
     ASSERT_LT(mallinfo2().uordblks, 2 * after_some + (48u << 20)) << edit;
   }
   EXPECT_LT(build.counts().whole, 100u);
