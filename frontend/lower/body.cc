@@ -18,6 +18,7 @@ class WholeBody : public BodyPhase {
 
  private:
   void begin();
+  void write_before_test();
   void write_code();
   void end();
 };
@@ -40,11 +41,29 @@ void WholeBody::write() {
   ask<MockCode>().mock_prologue();
   const bool written = info_.made == MadeCode::kNone && !info_.test && !info_.library;
   if (written) body_.counting.begin(sema_.options.coverage, body_.out.name);
-  if (info_.test && info_.decl->kind == PouKind::kProgram) ask<MockCode>().activate_mock_bodies();
-  if (info_.setup != nullptr) ask<Statements>().write(info_.setup->body);
+  if (info_.test && info_.decl->kind == PouKind::kProgram) write_before_test();
   if (!info_.connections.empty()) body_.flow.exit = build_.new_block();
   write_code();
   end();
+}
+
+// SETUP. And TEARDOWN, which is a run of its own, so that nothing that ends the test is in its way.
+void WholeBody::write_before_test() {
+  const auto due = [&] { return global_place(sema_.tests.teardown); };
+  if (info_.teardown != nullptr) {
+    const ir::BlockId teardown = build_.new_block();
+    const ir::BlockId test = build_.new_block();
+    build_.branch(build_.load(due(), ir::Scalar::kBool), teardown, test);
+    build_.start(teardown);
+    ask<Statements>().write(info_.teardown->body);
+    if (build_.reachable()) build_.ret();
+    build_.start(test);
+  }
+  ask<MockCode>().activate_mock_bodies();
+  if (info_.setup != nullptr) ask<Statements>().write(info_.setup->body);
+  if (info_.teardown != nullptr && build_.reachable()) {
+    build_.store(due(), ir::Scalar::kBool, build_.constant(ir::Scalar::kBool, 1));
+  }
 }
 
 void WholeBody::write_code() {
@@ -57,9 +76,6 @@ void WholeBody::write_code() {
     ask<PoolCode>().leave_method();
   } else if (decl.chart != kNoChart) {
     ChartBody(body_, scope_, tree_.charts[decl.chart]).run();
-  } else if (info_.teardown != nullptr) {
-    ask<TryCode>().try_finally([&] { ask<Statements>().write(decl.body); }, info_.teardown->body,
-                               decl.span);
   } else {
     ask<Statements>().write(decl.body);
   }

@@ -69,6 +69,7 @@ void EnableCode::close_enable(Enable& enable, ir::ValueList result, ir::TypeId t
   for (ir::BlockId failed : {enable.skip, enable.handler}) {
     if (!failed.valid()) continue;
     build_.start(failed);
+    if (failed == enable.handler) ask<TryCode>().pass_assertions_on();
     store_eno(enable, false);
     ir::ValueList result_then;
     if (type.valid()) result_then.push_back(build_.constant(scalar(type), otherwise));

@@ -115,10 +115,24 @@ void TryCode::try_catch(const Stmt& stmt) {
   if (build_.reachable()) go(behind, body_.flow.tries.size() - 1);
   leave_try();
   build_.start(handler);
+  pass_assertions_on();
   if (stmt.target.valid()) catch_variable(stmt);
   ask<Statements>().write(tree_.branches[stmt.arms.first].body);
   if (build_.reachable()) build_.jump(behind);
   build_.start(behind);
+}
+
+void TryCode::pass_assertions_on() {
+  if (!sema_.for_tests()) return;
+  constexpr ir::Scalar kU32 = ir::Scalar::kU32;
+  const ir::ValueId kind = build_.trap_kind();
+  const ir::ValueId assertion = build_.constant(kU32, static_cast<uint64_t>(ir::TrapKind::kAssert));
+  const ir::BlockId again = build_.new_block();
+  const ir::BlockId caught = build_.new_block();
+  build_.branch(build_.compare(ir::Op::kEq, kU32, kind, assertion), again, caught);
+  build_.start(again);
+  build_.trap_again(kind);
+  build_.start(caught);
 }
 
 // An integer, or the library's ExceptionCode: 0 is no trap, so kinds count from 1.

@@ -26,7 +26,9 @@ enum class Purpose : uint8_t { kRun, kTest };
 // Store: a build for tests.
 struct Tests {
   std::vector<TestCase> cases;
-  uint32_t message = 0;  // member of the globals that takes the message of a failed assertion
+  // Members of the globals: kTestMessage, kTestTeardown (frontend/compile.h).
+  uint32_t message = 0;
+  uint32_t teardown = 0;
   std::vector<MockBody> mock_bodies;
 };
 

@@ -99,3 +99,90 @@ said 'watch needs PATHS'
 expect 2 stc test plant --watch --list
 expect 2 stc test plant --watch --format json
 said 'shows text'
+
+# What catches traps catches no assertion, and TEARDOWN hides no reason.
+mkdir caught
+cat >caught/code.st <<'ST'
+FUNCTION Check : INT
+VAR_INPUT x : INT; END_VAR
+  Check := 10 / x;
+END_FUNCTION
+FUNCTION Careful : INT
+VAR_INPUT x : INT; END_VAR
+  __TRY Careful := Check(x); __CATCH Careful := -1; __ENDTRY
+END_FUNCTION
+ST
+cat >caught/a_test.st <<'ST'
+TEST 'in __TRY'
+VAR e : DINT; END_VAR
+  __TRY ASSERT_EQ(1, 2); __CATCH(e) __ENDTRY
+END_TEST
+TEST 'in a mock, by the code that calls it'
+MOCK_FUNCTION Check : INT
+VAR_INPUT x : INT; END_VAR
+  ASSERT_EQ(x, 2);
+  Check := x;
+END_MOCK_FUNCTION
+  ASSERT_EQ(Careful(1), 1);
+END_TEST
+TEST 'behind ENO'
+VAR ok : BOOL; r : INT; END_VAR
+MOCK_FUNCTION Check : INT
+VAR_INPUT x : INT; END_VAR
+  ASSERT_EQ(x, 2);
+  Check := x;
+END_MOCK_FUNCTION
+  r := Check(EN := TRUE, x := 1, ENO => ok);
+END_TEST
+TEST 'other traps are caught'
+  ASSERT_EQ(Careful(0), -1);
+END_TEST
+ST
+expect 1 stc test caught
+for name in 'in __TRY' 'in a mock, by the code that calls it' 'behind ENO'; do
+  grep -q "^FAIL   $name" out || fail "$name passes: $(cat out)"
+done
+grep -q '^PASS   other traps are caught' out || fail "$(cat out)"
+mkdir behind
+cat >behind/b_test.st <<'ST'
+SETUP
+VAR s, n : INT; t : TIME; END_VAR
+  s := 7;
+END_SETUP
+TEARDOWN
+  ASSERT_EQ(n, 0, 'left behind');
+  ASSERT_EQ(TIME() - t, T#0s, 'time goes on');
+END_TEARDOWN
+TEST 'own reason'
+  n := 1;
+  ASSERT_EQ(s, 42, 'the reason');
+END_TEST
+TEST 'trap'
+  n := 1;
+  s := s / (s - 7);
+END_TEST
+TEST 'too long'
+  n := 1;
+  WHILE TRUE DO s := 1; END_WHILE;
+END_TEST
+TEST 'behind alone'
+  n := 2;
+END_TEST
+TEST 'time'
+  ADVANCE_TIME(T#5s);
+  t := TIME();
+END_TEST
+TEST 'good'
+  RETURN;
+END_TEST
+ST
+expect 1 stc test behind --timeout 1000
+for line in 'b_test.st:11: the reason: expected 42, got 7; then TEARDOWN, line 6: left behind: expected 0, got 1' \
+  'b_test.st:15: division or MOD by zero; then TEARDOWN, line 6: left behind' \
+  'b_test.st:19: .* --timeout); then TEARDOWN, line 6: left behind' \
+  'b_test.st:6: left behind: expected 0, got 2' '2 passed, 2 failed, 2 stopped by a trap'; do
+  grep -q "$line" out || fail "not \`$line\`: $(cat out)"
+done
+sed -i 's/s := 7;/s := 7 \/ n;/' behind/b_test.st
+expect 1 stc test behind
+if grep -q TEARDOWN out; then fail "a TEARDOWN without its SETUP: $(cat out)"; fi

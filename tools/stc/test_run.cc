@@ -43,32 +43,9 @@ void add_hits(const ir::Image& image, const vm::Memory& memory, std::vector<uint
   }
 }
 
-}  // namespace
-
-base::Result<TestResult> run_test(const ir::VerifiedImage& verified,
-                                  const frontend::TestCase& test, uint64_t fuel,
-                                  std::vector<uint64_t>* hits) {
-  base::Result<vm::Memory> memory = vm::Memory::reserve();
-  if (!memory.ok()) return memory.error();
-  const ir::Image& image = verified.image();
-  vm::write_initial_data(image, memory->data());
-  const std::unique_ptr<vm::Generation> generation =
-      vm::Generation::build(verified, 0, memory->data());
-  vm::Execution execution(image.call_depth);
-  const auto begin = std::chrono::steady_clock::now();
-  vm::Exit exit = vm::Exit::kDone;
-  for (const uint32_t id : {instance_of(image, kStart), instance_of(image, test.instance)}) {
-    if (id == 0 || exit != vm::Exit::kDone) continue;
-    execution.start(*generation, memory->data(), id, ir::kStackBegin, 0);
-    exit = execution.run(fuel);
-  }
-  const auto end = std::chrono::steady_clock::now();
-
-  TestResult result;
-  result.test = test;
-  result.seconds = std::chrono::duration<double>(end - begin).count();
-  if (hits != nullptr) add_hits(image, *memory, *hits);
-  if (exit == vm::Exit::kDone) return result;
+// Where and why a run has ended that did not come to its end.
+void note_end(const ir::Image& image, const vm::Memory& memory, const vm::Execution& execution,
+              vm::Exit exit, uint64_t fuel, TestResult& result) {
   const vm::Trap trap =
       exit == vm::Exit::kTrap ? execution.trap() : execution.interrupted(ir::TrapKind::kFuel);
   const vm::TrapText text = vm::describe(image, trap);
@@ -77,10 +54,52 @@ base::Result<TestResult> run_test(const ir::VerifiedImage& verified,
   result.file = text.file;
   result.line = text.line;
   result.trap = ir::trap_name(trap.kind);
-  result.text = assertion ? assertion_message(image, *memory) : text.text;
+  result.text = assertion ? assertion_message(image, memory) : text.text;
   if (exit == vm::Exit::kSuspended) {
     result.text += " (" + std::to_string(fuel) + " calls and loop rounds, --timeout)";
   }
+}
+
+// The test has come behind its SETUP, and there is a TEARDOWN.
+bool is_teardown_due(const ir::Image& image, const vm::Memory& memory) {
+  const base::Result<ir::Symbol> due = ir::find_symbol(image, frontend::kTestTeardown);
+  return due.ok() && memory.data()[due->data] != 0;
+}
+
+}  // namespace
+
+base::Result<TestResult> run_test(const ir::VerifiedImage& verified, const frontend::TestCase& test,
+                                  uint64_t fuel, std::vector<uint64_t>* hits) {
+  base::Result<vm::Memory> memory = vm::Memory::reserve();
+  if (!memory.ok()) return memory.error();
+  const ir::Image& image = verified.image();
+  vm::write_initial_data(image, memory->data());
+  const std::unique_ptr<vm::Generation> generation =
+      vm::Generation::build(verified, 0, memory->data());
+  vm::Execution execution(image.call_depth);
+  const auto run = [&](const std::string& instance, int64_t time_ns, TestResult& result) {
+    const uint32_t id = instance_of(image, instance);
+    if (id == 0) return;
+    execution.start(*generation, memory->data(), id, ir::kStackBegin, time_ns);
+    const vm::Exit exit = execution.run(fuel);
+    if (exit != vm::Exit::kDone) note_end(image, *memory, execution, exit, fuel, result);
+  };
+  TestResult result;
+  result.test = test;
+  const auto begin = std::chrono::steady_clock::now();
+  run(kStart, 0, result);
+  if (result.verdict == Verdict::kPassed) run(test.instance, 0, result);
+  TestResult behind;
+  if (is_teardown_due(image, *memory)) run(test.instance, execution.task_time_ns(), behind);
+  const auto end = std::chrono::steady_clock::now();
+  if (behind.verdict != Verdict::kPassed && result.verdict == Verdict::kPassed) {
+    behind.test = test;
+    result = std::move(behind);
+  } else if (behind.verdict != Verdict::kPassed) {
+    result.text += "; then TEARDOWN, line " + std::to_string(behind.line) + ": " + behind.text;
+  }
+  result.seconds = std::chrono::duration<double>(end - begin).count();
+  if (hits != nullptr) add_hits(image, *memory, *hits);
   return result;
 }
 

@@ -141,6 +141,7 @@ inline void Execution::begin(const Generation& generation, const CodeTable& code
 }
 
 uint64_t Execution::machine_entries() const { return state_->entries; }
+int64_t Execution::task_time_ns() const { return state_->task_time_ns; }
 const Trap& Execution::trap() const { return state_->trap; }
 
 Trap Execution::interrupted(ir::TrapKind kind) const {

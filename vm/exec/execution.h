@@ -94,6 +94,7 @@ class Execution {
   // one may start while this one is suspended.
   uint32_t stack_top() const;
   uint64_t fuel_used() const { return fuel_used_; }
+  int64_t task_time_ns() const;  // as it was given, and as code has moved it on
   uint64_t machine_entries() const;  // how often the interpreter went on in machine code
 
  private:

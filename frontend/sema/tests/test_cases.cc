@@ -118,6 +118,12 @@ void TestBuild::add_test_globals() {
   std::vector<ir::Member>& members = sema_.program.types.edit(sema_.program.globals).members;
   sema_.tests.message = static_cast<uint32_t>(members.size());
   members.push_back(std::move(message));
+  ir::Member teardown;
+  teardown.name = kTestTeardown;
+  teardown.type = sema_.program.types.elementary(ir::Kind::kBool);
+  teardown.section = ir::Section::kGlobal;
+  sema_.tests.teardown = static_cast<uint32_t>(members.size());
+  members.push_back(std::move(teardown));
   for (const Stmt& stmt : sema_.tree.stmts) {
     if (stmt.kind != StmtKind::kMockFunction || !stmt.target.valid()) continue;
     const Expr& target = sema_.tree[stmt.target];
