@@ -34,7 +34,8 @@ class Scheduler {
   void restart();
   // All of them, and they are sent. `for_good`: holds for a time are over at once.
   void make_outputs_safe(bool for_good);
-  // Other forces hold than `before`: what a stopped task no longer has forced becomes safe.
+  // Other forces hold than `before`, at once: what a stopped task no longer has forced becomes
+  // safe.
   void forces_exchanged(const ForcedSet& before);
   // Variables that are sent as these were written from outside.
   void outputs_set(std::span<const WriteSet::OutputBits> outputs);
@@ -135,6 +136,7 @@ class Scheduler {
   void copy_outputs(TaskSlot& task);
   void impose(bool inputs_only);
   bool impose_on_outputs();
+  void impose_at_boundary();
   uint64_t fuel_left(const TaskSlot& task) const;
 
   ControllerOptions options_;

@@ -349,8 +349,17 @@ bool Scheduler::impose_on_outputs() {
   return true;
 }
 
+// Who looks at this boundary finds what was said to hold, whether a cycle has come or not.
+void Scheduler::impose_at_boundary() {
+  if (faulted_) return;
+  impose(false);
+  const auto is_output = [](const Force& force) { return force.symbol.output; };
+  outputs_stale_ |= std::ranges::any_of(tables_->forced.forces, is_output);
+}
+
 void Scheduler::forces_exchanged(const ForcedSet& before) {
   if (faulted_) return;
+  impose_at_boundary();
   base::Bytes& forced = tables_->forced_outputs;
   base::Bytes& mask = tables_->written;
   std::fill(forced.begin(), forced.end(), uint8_t{0});
@@ -377,6 +386,7 @@ void Scheduler::outputs_set(std::span<const WriteSet::OutputBits> outputs) {
     tables_->waiting_mask[row.byte] &= static_cast<uint8_t>(~row.mask);
   }
   outputs_stale_ |= !outputs.empty();
+  impose_at_boundary();
 }
 
 }  // namespace vm

@@ -179,6 +179,31 @@ TEST(Force, ComesWithItsExchange) {
   EXPECT_EQ(plant.get("seen[2]"), "73");
 }
 
+// Whether a cycle comes between two commands makes no difference to what the second one finds.
+TEST(Force, HoldsFromItsAnswerOn) {
+  Plant plant(R"(
+VAR_GLOBAL start : BOOL; q AT %QB0 : BYTE; i AT %IB0 : BYTE; END_VAR
+PROGRAM Main VAR seen : BYTE; n : DINT; END_VAR n := n + 1; seen := i; END_PROGRAM)");
+  ASSERT_TRUE(plant.ok());
+  plant.io.set_input(0, 3);
+  plant.cycles(2);
+  ASSERT_TRUE(plant->force("start", "TRUE").ok());
+  ASSERT_TRUE(plant->force("q", "55").ok());
+  ASSERT_TRUE(plant->force("i", "9").ok());
+  EXPECT_EQ(plant.get("start"), "TRUE");
+  EXPECT_EQ(plant.get("q"), "16#37");
+  EXPECT_EQ(plant.get("i"), "16#09");
+  ASSERT_TRUE(plant->set("start", "FALSE").ok());
+  EXPECT_EQ(plant.get("start"), "TRUE") << "what is forced is not written";
+  for (const char* name : {"start", "q", "i"}) ASSERT_TRUE(plant->unforce(name).ok());
+  plant.cycles(1);
+  EXPECT_EQ(plant.get("start"), "TRUE") << "nobody has written it since";
+  EXPECT_EQ(plant.io.output(0), 55);
+  EXPECT_EQ(plant.get("Main.seen"), "16#03");
+  ASSERT_TRUE(plant->force("start", "FALSE").ok());
+  EXPECT_EQ(plant.get("start"), "FALSE");
+}
+
 // All or none.
 TEST(Force, OneMistakeForcesNothing) {
   Plant plant(kSource);
