@@ -124,8 +124,10 @@ class Booting {
     const auto likely = [&](const StoredImage& image) {
       return newest && (newest->image == image.digest) != newest->trial;
     };
-    std::stable_partition(found_.held.begin(), found_.held.end(), likely);
-    for (const StoredImage& stored : found_.held) {
+    const std::vector<StoredImage>& held = found_.held;
+    for (size_t i = 0; i < 2 * held.size(); ++i) {  // the likely ones first
+      const StoredImage& stored = held[i % held.size()];
+      if (likely(stored) != (i < held.size())) continue;
       std::string unused;
       const std::optional<ir::VerifiedImage> image = verified(stored, unused);
       if (!image) continue;

@@ -31,6 +31,26 @@ std::string sample_text(const vm::Values& values) {
   return out + "\n";
 }
 
+// A change may have taken some away.
+base::Status forget_gone(ControllerClient& client, Names& names, const base::Error& why) {
+  std::erase_if(names, [&](const std::string& name) {
+    base::Result<vm::Values> value = client.get({name});
+    const bool gone = !value.ok() && value.error().refusal == base::Refusal::kNoSuchVariable;
+    if (gone) std::fprintf(stderr, "%s is not there any more\n", name.c_str());
+    return gone;
+  });
+  return names.empty() ? base::Status(why) : base::Ok{};
+}
+
+// Who has seen samples gets further ones after what passes.
+base::Status go_on(ControllerClient& client, Names& names, const base::Error& why) {
+  if (why.refusal == base::Refusal::kNoSuchVariable) return forget_gone(client, names, why);
+  if (why.refusal == base::Refusal::kStaleBase) return base::Ok{};  // a change in the middle
+  if (why.refusal != base::Refusal::kBusy) return why;
+  refuse(why);
+  return base::Ok{};
+}
+
 base::Status watch(const tools::Options& options) {
   const bool json = wants_json(options);
   base::Result<uint64_t> interval = options.number("--interval", 500);
@@ -42,10 +62,16 @@ base::Status watch(const tools::Options& options) {
   base::Result<Names> names = matching(*client, options.arguments());
   if (!names.ok()) return names.error();
   StopSignal::install();
-  for (uint64_t i = 0; i < *count && !StopSignal::received(); ++i) {
-    if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(*interval));
+  for (uint64_t shown = 0; shown < *count && !StopSignal::received();) {
+    if (shown != 0) std::this_thread::sleep_for(std::chrono::milliseconds(*interval));
     base::Result<vm::Values> values = client->get(*names);
-    if (!values.ok()) return values.error();
+    if (!values.ok()) {
+      const base::Status goes_on =
+          shown == 0 ? values.error() : go_on(*client, *names, values.error());
+      if (!goes_on.ok()) return goes_on;
+      continue;
+    }
+    ++shown;
     std::fputs((json ? values_json(*values) : sample_text(*values)).c_str(), stdout);
     std::fflush(stdout);
   }

@@ -49,6 +49,7 @@ bool Connection::answer_next(Service& service) {
   if (!request) request = in.next();
   if (request) {
     bool keep_open = true;
+    only_looks = only_looks && !changes_state(*request);
     service.asked_by(user, session, bridged);
     const base::Bytes answer = service.answer(*request, keep_open);
     put_answer(answer, keep_open);
@@ -83,14 +84,22 @@ bool Connections::add(Connection& connection, Instant now) {
   const size_t places = connection.bridged ? kMaxConnections - 1 : kMaxConnections;
   if (rows_.size() >= places && !make_room(connection.bridged, now)) return false;
   connection.session = ++sessions_;
-  connection.active = now;
+  connection.since = connection.active = now;
   rows_.push_back(std::make_unique<Connection>(std::move(connection)));
   return true;
 }
 
-// A bridge takes the place of another one only.
 bool Connections::make_room(bool bridged, Instant now) {
   if (asking_ != nullptr) return false;
+  size_t leaves = longest_idle(bridged, now);
+  if (leaves == rows_.size() && !bridged) leaves = newest_looker(now);
+  if (leaves == rows_.size()) return false;
+  end(leaves);
+  return true;
+}
+
+// A bridge takes the place of another one only. How many there are: none.
+size_t Connections::longest_idle(bool bridged, Instant now) const {
   size_t oldest = rows_.size();
   for (size_t i = 0; i < rows_.size(); ++i) {
     const Connection& row = *rows_[i];
@@ -98,9 +107,17 @@ bool Connections::make_room(bool bridged, Instant now) {
     if (!idle || (bridged && !row.bridged)) continue;
     if (oldest == rows_.size() || row.active < rows_[oldest]->active) oldest = i;
   }
-  if (oldest == rows_.size()) return false;
-  end(oldest);
-  return true;
+  return oldest;
+}
+
+// Likewise.
+size_t Connections::newest_looker(Instant now) const {
+  for (size_t i = rows_.size(); i-- > 0;) {
+    const Connection& row = *rows_[i];
+    const bool settled = !row.waiting_for_peer() && now - row.since >= kSettled;
+    if (settled && row.only_looks && !row.bridged) return i;
+  }
+  return rows_.size();
 }
 
 bool Connections::attend(std::span<const pollfd> said, const std::atomic<bool>& ending,

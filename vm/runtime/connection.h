@@ -28,6 +28,7 @@ struct Connection {
   uint64_t session = 0;  // another one for each connection
   std::string user;
   bool bridged = false;  // of another machine, by `stvm bridge`
+  Instant since = {};    // when it got its place
   Instant active = {};   // when bytes came or went last
   FrameReader in = {};
   std::optional<base::Bytes> held = {};  // a message that waits for another one's answer
@@ -35,6 +36,7 @@ struct Connection {
   size_t sent = 0;
   bool closing = false;
   bool silent = true;  // nothing has ever come
+  bool only_looks = true;  // has asked for nothing that changes something
 
   bool sending() const { return sent < out.size(); }
   bool waiting_for_peer() const { return sending() || !in.empty() || held; }
@@ -53,7 +55,9 @@ struct Connection {
 
 // All connections: decides who may stay and who gets a place. Bridges cannot take the last place,
 // so that somebody on this machine always gets one. When no place is free, the connection that has
-// been idle longest is ended.
+// been idle longest is ended. When none is idle, it is the newest one of this machine that only
+// looks, so that watchers keep out nobody who wants to do something; a client that is open connects
+// again by itself.
 class Connections {
  public:
   // A peer that stops in the middle of a message, or does not read its answer, is ended after this.
@@ -86,6 +90,8 @@ class Connections {
 
  private:
   bool make_room(bool bridged, Instant now);
+  size_t longest_idle(bool bridged, Instant now) const;
+  size_t newest_looker(Instant now) const;
 
   Service& service_;
   const Connection* asking_ = nullptr;  // whose request is being answered

@@ -262,6 +262,10 @@ base::Error not_understood(const char* what) {
 
 const char* command_name(Command command) { return row(command).name; }
 bool changes_state(Command command) { return row(command).changes_state; }
+bool changes_state(base::ByteSpan request) {
+  return request.size() > 1 && request[1] < std::size(kCommands) &&
+         kCommands[request[1]].changes_state;
+}
 
 base::Bytes encode(const Request& request) {
   FieldWriter writer;

@@ -42,6 +42,8 @@ inline constexpr uint8_t kCommandCount = 0
     ;
 const char* command_name(Command command);
 bool changes_state(Command command);
+// Of a request that nobody has looked at yet.
+bool changes_state(base::ByteSpan request);
 
 enum SwitchFlags : uint32_t {
   kAllowLoss = 1,

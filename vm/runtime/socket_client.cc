@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "vm/runtime/frames.h"
+#include "vm/runtime/protocol.h"
 #include "vm/runtime/socket_peer.h"
 #include "vm/runtime/socket_place.h"
 #include "vm/runtime/socket_server.h"
@@ -89,7 +90,15 @@ bool SocketClient::closed_meanwhile() const {
   return ::recv(socket_.get(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
 }
 
+// One that only looks may have lost its place just before the request came (Connections).
 base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
+  bool closed = false;
+  base::Result<base::Bytes> answer = ask(request, closed);
+  const bool again = closed && !directory_.empty() && !changes_state(request);
+  return again ? ask(request, closed) : std::move(answer);
+}
+
+base::Result<base::Bytes> SocketClient::ask(base::ByteSpan request, bool& closed) {
   if (!directory_.empty() && closed_meanwhile()) {
     base::Result<Descriptor> again = open(directory_, For::kThisMachine);
     if (!again.ok()) return again.error();
@@ -100,7 +109,7 @@ base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
   for (size_t sent = 0; sent < out.size();) {
     ssize_t n = ::send(socket_.get(), out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return lost("closed the connection");
+    if (n < 0) break;  // it may have said why before it closed the connection
     sent += static_cast<size_t>(n);
   }
   FrameReader reader;
@@ -116,7 +125,8 @@ base::Result<base::Bytes> SocketClient::exchange(base::ByteSpan request) {
       socket_ = Descriptor();
       return lost("does not answer");
     }
-    if (n <= 0) return lost("closed the connection");
+    closed = n <= 0;
+    if (closed) return lost("closed the connection");
     reader.add({buffer, static_cast<size_t>(n)});
   }
 }

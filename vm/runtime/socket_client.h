@@ -30,6 +30,7 @@ class SocketClient : public Transport {
 
  private:
   SocketClient(std::string place, Descriptor socket, uint32_t patience_s);
+  base::Result<base::Bytes> ask(base::ByteSpan request, bool& closed);
   base::Error lost(const char* what) const;
   bool closed_meanwhile() const;
 

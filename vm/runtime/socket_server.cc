@@ -126,8 +126,10 @@ void SocketServer::take_connection(Connections& connections) {
   if (!user.ok()) return send_away(next.socket, user.error());
   next.user = std::move(*user);
   if (connections.add(next, now)) return;
-  send_away(next.socket, {base::Refusal::kBusy, std::to_string(kMaxConnections) +
-                                             " connections are in use; end one, or try again"});
+  send_away(next.socket,
+            {base::Refusal::kBusy,
+             std::to_string(kMaxConnections) +
+                 " connections are in use just now; try again in a second, or end one"});
 }
 
 // Newcomers too: one of them may have something urgent.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <random>
+#include <thread>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -136,6 +137,22 @@ TEST_F(SocketTest, ConnectionsThatSayNothingDoNotKeepOthersOut) {
   std::vector<Descriptor> silent;
   for (size_t i = 0; i < 2 * kMaxConnections; ++i) silent.push_back(raw_connection());
   EXPECT_TRUE(is_served(directory_));
+}
+
+// The answer is there when the connection has been closed before the request is sent.
+TEST_F(SocketTest, WhoGetsNoPlaceIsToldSo) {
+  std::vector<std::unique_ptr<SocketClient>> others;
+  for (size_t i = 0; i < kMaxConnections; ++i) {
+    others.push_back(std::move(*SocketClient::connect(directory_)));
+    ASSERT_TRUE(others.back()->exchange(encode(Request{.command = Command::kCancel})).ok());
+  }
+  auto client = SocketClient::connect(directory_);
+  ASSERT_TRUE(client.ok());
+  while (server_->accepts() <= kMaxConnections) std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  auto answer = (*client)->exchange(encode(Request{.command = Command::kStatus}));
+  ASSERT_TRUE(answer.ok()) << base::to_string(answer.error());
+  EXPECT_EQ(decode_answer(*answer).error().refusal, base::Refusal::kBusy);
 }
 
 // The last place is for this machine, however many bridges there are.
@@ -353,6 +370,30 @@ TEST_F(Places, WhoNeverAskedMakesRoomAtOnce) {
   EXPECT_TRUE(add(false, seconds(0)));
   EXPECT_EQ(service_.sessions, std::vector<uint64_t>{6});
   EXPECT_FALSE(add(false, seconds(0)));
+}
+
+// What only looks connects again by itself; what changes something has brought more than that.
+TEST_F(Places, WatchersKeepNobodyOut) {
+  for (size_t i = 0; i < kMaxConnections; ++i) EXPECT_TRUE(add(false, seconds(i / 8)));
+  const auto ask = [&](Connection& row, Command command, seconds at) {
+    int ends[2];
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
+    row.socket = Descriptor(ends[0]);
+    const Descriptor peer(ends[1]);
+    const base::Bytes request = frame(encode(Request{.command = command}));
+    ASSERT_GT(::send(peer.get(), request.data(), request.size(), 0), 0);
+    EXPECT_TRUE(row.attend(POLLIN, service_, Instant() + at));
+  };
+  for (size_t i = 0; i < kMaxConnections; ++i) {
+    ask(connections_[i], i == 15 ? Command::kUpload : Command::kGet, seconds(9));
+  }
+  connections_[14].bridged = true;
+  EXPECT_FALSE(add(true, seconds(9)));
+  EXPECT_TRUE(add(false, seconds(9)));
+  EXPECT_EQ(service_.sessions, std::vector<uint64_t>{14});
+  EXPECT_EQ(connections_[15].session, 17u);
+  for (size_t i = 0; i < kMaxConnections; ++i) connections_[i].since = Instant() + seconds(9);
+  EXPECT_FALSE(add(false, seconds(9))) << "all have just come";
 }
 
 TEST_F(Places, ABridgeTakesNoneFromThisMachine) {
