@@ -5,9 +5,19 @@
 for k in 1 2 3; do
   printf 'PROGRAM Main VAR n : DINT; END_VAR n := n + %s; END_PROGRAM\n' $k >v$k.st
 done
-serve() { stvm serve --dir plc "$@" >log 2>&1 & echo $! >plc.pid; wait_for 'running' stvm status --dir plc; }
+serve() { "$bin/stvm" serve --dir plc "$@" >log 2>&1 & echo $! >plc.pid; wait_for 'running' stvm status --dir plc; }
 stop() { expect 0 stvm stop --dir plc; wait "$(cat plc.pid)" || true; rm plc.pid; }
 serve v1.st
+# A folder has one controller, also when somebody has removed its lock, its socket, or both (X5).
+for gone in lock control; do
+  rm -f plc/$gone
+  refused_by_it() { expect 7 stvm serve --dir plc "$@"; said "R0408: a controller already runs in plc"; }
+  refused_by_it
+  refused_by_it v2.st
+done
+kill "$(cat plc.pid)"
+wait "$(cat plc.pid)" || true
+serve
 expect 0 stvm change --dir plc -y v2.st
 expect 0 stvm status --dir plc --format json
 cp out before

@@ -74,17 +74,21 @@ base::Result<StateFolder> StateFolder::open(const std::string& path, bool create
   base::Status safe = check_folders(real);
   if (!safe.ok()) return safe.error();
   const std::string file = real + "/lock";
+  // The folder itself, whose lock nobody can remove, and the file that older versions lock.
+  vm::Descriptor folder(::open(real.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   vm::Descriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   // The file system is read-only: the program can run from it all the same.
-  if (!lock.valid() && errno == EROFS) {
-    lock = vm::Descriptor(::open(real.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const bool read_only = !lock.valid() && errno == EROFS;
+  if (!lock.valid() && !read_only) return unwritable(file, std::strerror(errno));
+  for (const vm::Descriptor* one : {&lock, &folder}) {
+    if (!one->valid() || ::flock(one->get(), LOCK_EX | LOCK_NB) == 0) continue;
+    if (errno == EWOULDBLOCK) {
+      return base::Error{base::Refusal::kAlreadyRunning, "a controller already runs in " + path};
+    }
+    // Some file systems of networks lock files only.
+    if (one == &lock || read_only) return unwritable(file, std::strerror(errno));
   }
-  if (!lock.valid()) return unwritable(file, std::strerror(errno));
-  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK) return unwritable(file, std::strerror(errno));
-    return base::Error{base::Refusal::kAlreadyRunning, "a controller already runs in " + path};
-  }
-  return StateFolder(real, std::move(lock), is_new);
+  return StateFolder(real, {std::move(lock), std::move(folder)}, is_new);
 }
 
 bool holds_program(const std::string& directory) {

@@ -1,6 +1,7 @@
 // The state directory of one controller: its lock, its records, its socket.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ class StateFolder {
   bool is_new() const { return is_new_; }  // open() has made it
 
  private:
-  StateFolder(std::string path, vm::Descriptor lock, bool is_new)
-      : path_(std::move(path)), lock_(std::move(lock)), is_new_(is_new) {}
+  using Locks = std::array<vm::Descriptor, 2>;
+  StateFolder(std::string path, Locks locks, bool is_new)
+      : path_(std::move(path)), locks_(std::move(locks)), is_new_(is_new) {}
   std::string path_;
-  vm::Descriptor lock_;
+  Locks locks_;
   bool is_new_;
 };
 
