@@ -78,3 +78,18 @@ cp trial.rec bad.rec
 printf 'xxxxxxxx' | dd of=bad.rec bs=1 seek=400 conv=notrunc 2>/dev/null
 expect 7 stvm replay bad.rec
 said 'R0416'
+# D3: all that was on trial at its begin is undone, and another change is made.
+rm -rf plc
+serve plc e0.st
+expect 0 stvm change e1.st --yes --allow-loss --allow-overrun --dir plc
+expect 0 stvm change e2.st --yes --allow-overrun --dir plc
+expect 0 stvm stop --dir plc
+rm plc.pid
+serve plc --record undone.rec
+expect 0 stvm undo --yes --dir plc
+expect 0 stvm undo --yes --dir plc
+expect 0 stvm change e3.st --yes --allow-loss --allow-overrun --dir plc
+expect 0 stvm stop --dir plc
+rm plc.pid
+expect 0 stvm replay undone.rec
+said '[1-9][0-9]* cycles replayed, the state is identical'

@@ -65,15 +65,21 @@ class Player {
     auto controller = vm::Controller::start(*image, options, replay_, replay_, start.retained);
     if (!controller.ok()) return controller.error();
     controller_ = std::move(*controller);
-    base::Result<online_change::Boot> boot = online_change::boot(store_, *image, "replay", 0);
+    auto edits = std::make_optional<std::vector<online_change::ResumedEdit>>();
+    if (!start.trial.empty()) edits = online_change::decode_trial(start.trial, image->digest());
+    if (!edits) return unusable("its edits on trial do not lead to its program");
+    // The store is as it was: what undo can come to is what was accepted.
+    const ir::VerifiedImage& accepted = edits->empty() ? *image : edits->front().before;
+    base::Result<online_change::Boot> boot = online_change::boot(store_, accepted, "replay", 0);
     if (!boot.ok()) return boot.error();
+    base::Status stored = base::Ok{};
+    if (!edits->empty()) {
+      stored = store_.begin_trial({image->digest(), image->encoded()}, retained, false);
+    }
+    if (!stored.ok()) return stored;
     service_.emplace(*controller_, idle_clock_, store_, boundary_);
     service_->stand_between_cycles();
-    if (!start.trial.empty()) {
-      const auto edits = online_change::decode_trial(start.trial, image->digest());
-      if (!edits) return unusable("its edits on trial do not lead to its program");
-      service_->resume(*edits);
-    }
+    if (!edits->empty()) service_->resume(*edits);
     return compare_and_ask(recording_.cycles.front());
   }
 
