@@ -152,10 +152,17 @@ void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image) {
   base::Result<vm::Memory> initial = vm::Memory::reserve();
   if (!initial.ok()) return;
   vm::write_initial_data(old_image, initial->data());
-  std::stable_partition(rows.begin(), rows.end(), [&](const LiveLoss& row) {
+  std::vector<LiveLoss> last;
+  auto to = rows.begin();
+  for (LiveLoss& row : rows) {
     base::Result<ir::Symbol> symbol = ir::find_symbol(old_image, row.path);
-    return !symbol.ok() || value_text(old_image, *symbol, initial->view()) != row.old_value;
-  });
+    if (symbol.ok() && value_text(old_image, *symbol, initial->view()) == row.old_value) {
+      last.push_back(std::move(row));
+    } else if (LiveLoss& place = *to++; &place != &row) {
+      place = std::move(row);
+    }
+  }
+  std::move(last.begin(), last.end(), to);
 }
 
 base::Error would_lose(const LiveLoss& first, uint64_t more) {

@@ -79,3 +79,20 @@ expect 0 stvm run v1.st --scans 3 --force level=40 --force shared=3 --print Main
 said '^shared is forced at the boundaries of cycles: `F1` in line 5'
 said 'Main.seen=40'
 ! grep -q 'level is forced' err || fail "a note on what holds everywhere"
+
+# A force that ends because the program that comes has no place for it is an event, once (R-10).
+sed 's/seen, opened, n : INT/seen, opened : INT; n, added : INT/; s/^VAR_GLOBAL level/VAR_GLOBAL/; s/^  level := .*//; s/seen := level/seen := shared/; s/^VAR_GLOBAL,/VAR_GLOBAL/' v1.st >v3.st
+who=$(id -un)
+ended() { expect 0 stvm events --dir plc; [ "$(grep -cE " notice unforced by $who: without a place in the program that runs now: $1\$" out)" -eq "$2" ] || fail "not $2 times: $1"; }
+expect 0 stvm force --dir plc level=40 Main.seen=5
+expect 0 stvm change --dir plc --yes --allow-loss --allow-overrun v3.st
+ended level 1
+expect 0 stvm force --dir plc Main.added=7
+expect 0 stvm undo --dir plc --yes
+ended Main.added 1
+ended level 1
+expect 0 stvm change --dir plc --yes --allow-loss --allow-overrun v2.st
+expect 0 stvm undo --dir plc --yes
+expect 0 stvm get --dir plc --forces
+said '^Main.seen=5'
+ended '.*' 2

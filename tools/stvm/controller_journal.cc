@@ -7,6 +7,7 @@
 
 #include "online_change/store/retained_values.h"
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/event_text.h"
 
 namespace stvm {
 
@@ -70,6 +71,10 @@ void ControllerService::note_switch(Event event, const base::Digest& from,
   done.measured_ns = report.pause_ns;
   done.cycle = report.cycle_after;
   store_.note(std::move(done));
+  const auto& ended = controller_.next_forces(controller_.generation()).ended;
+  if (ended.empty()) return;
+  note_done(Event::kUnforced, who_,
+            "without a place in the program that runs now: " + list_text(ended));
 }
 
 // A snapshot with room for the running program or the staged one.

@@ -4,11 +4,10 @@
 #include "ir/bytecode/name_index.h"
 #include "ir/bytecode/variable_names.h"
 #include "tools/stvm/controller_service.h"
+#include "tools/stvm/event_text.h"
 
 namespace stvm {
 namespace {
-
-constexpr size_t kRoomForCount = 24;  // ", and 4096 more"
 
 base::Error other_version() { return {base::Refusal::kStaleBase, "another version runs now"}; }
 
@@ -35,19 +34,6 @@ base::Result<NamedValues> named_values(const ir::VerifiedImage& version,
     values.push_back({std::move((*paths)[i]), request.values[i]});
   }
   return values;
-}
-
-// As many as an event has room for, and how many more.
-std::string list_text(const std::vector<std::string>& rows) {
-  std::string out;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    if (i != 0 && out.size() + rows[i].size() + kRoomForCount > online_change::kMaxText) {
-      return out + ", and " + std::to_string(rows.size() - i) + " more";
-    }
-    if (i != 0) out += ", ";
-    out += rows[i];
-  }
-  return out;
 }
 
 std::string assignments_text(const NamedValues& values) {

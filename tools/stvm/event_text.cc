@@ -87,6 +87,19 @@ std::string event_text(const JournalEntry& entry) {
   return out;
 }
 
+std::string list_text(const std::vector<std::string>& rows) {
+  constexpr size_t kRoomForCount = 24;  // ", and 4096 more"
+  std::string out;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (i != 0 && out.size() + rows[i].size() + kRoomForCount > online_change::kMaxText) {
+      return out + ", and " + std::to_string(rows.size() - i) + " more";
+    }
+    if (i != 0) out += ", ";
+    out += rows[i];
+  }
+  return out;
+}
+
 std::string age_text(int64_t ns) {
   constexpr struct {
     int64_t seconds;

@@ -22,6 +22,8 @@ std::string versions_text(const online_change::JournalEntry& entry);
 std::string what_text(const online_change::JournalEntry& entry);
 // "... and 412 more like this in 10 s"
 std::string more_text(uint64_t count, int64_t span_ns);
+// "a, b, and 12 more": as many as an event has room for.
+std::string list_text(const std::vector<std::string>& rows);
 // "90 s", "12 min", "3 h", "2 d"
 std::string age_text(int64_t ns);
 

@@ -189,7 +189,8 @@ class Controller {
   base::Status force(std::string_view path, std::string_view value);
   base::Status unforce(std::string_view path);
   const std::vector<Force>& forces() const;
-  // What becomes of the forces with this generation, which was prepared.
+  // What becomes of the forces with this generation, which was prepared; what became of them, when
+  // it has been published.
   const ForcedSet& next_forces(const Generation& prepared) const;
 
   // --- for online change (online_change/apply) --------------------------------

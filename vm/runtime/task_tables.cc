@@ -113,6 +113,11 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
 
 void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
   std::fill(waiting_mask.begin(), waiting_mask.end(), uint8_t{0});
+  // Versions that wait know what would end; what had ended before does not end again.
+  std::erase_if(forced.ended, [&](const std::string& path) {
+    const auto is_it = [&](const Force& force) { return force.path == path; };
+    return std::ranges::none_of(previous.forced.forces, is_it);
+  });
   std::copy_n(previous.inputs.begin(), std::min(inputs.size(), previous.inputs.size()),
               inputs.begin());
   const base::Bytes& received =
