@@ -14,6 +14,10 @@ expect 7 stc build good.st -o no/such/folder/x.img
 said 'R0503.*no/such/folder'
 expect 7 stc build good.st -o /dev/full
 said 'R0503.*No space left'
+# A file that may not grow is an error as a full disk is, not the end of the process by a signal.
+limited=$(sh -c 'ulimit -f 0; "$@" 2>&1; echo "code $?"' sh "$bin/stc" build good.st -o limited.img)
+echo "$limited" | grep -q 'R0503.*File too large' || fail "with a limit: $limited"
+echo "$limited" | grep -qx 'code 7' || fail "with a limit: $limited"
 expect 2 stc build
 said 'R0504'
 expect 2 stc build good.st --frobnicate

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string_view>
@@ -155,6 +156,8 @@ static int run_tool(const Tool& tool, int argc, char** argv) {
 
 int dispatch(const Tool& tool, int argc, char** argv) {
   stand_in_for_closed_streams();
+  // A file that may not grow any further is an error of the write, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   return check_output(tool, run_tool(tool, argc, argv));
 }
 

@@ -31,8 +31,6 @@ bool is_ignored(int number) {
 void StopSignal::install() {
   handle(SIGINT, on_stop);
   handle(SIGTERM, on_stop);
-  // A file that may not grow any further is an error of the write, not the end of the process.
-  handle(SIGXFSZ, SIG_IGN);
 }
 
 void StopSignal::install_for_outputs() {
