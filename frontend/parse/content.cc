@@ -86,10 +86,10 @@ void add_token(Content& out, TokenKind kind, std::string_view text) {
     out.add_keyword(text);
   } else if (is_name(kind)) {
     out.add_name(text);
-  } else if (kind == TokenKind::kString) {
-    out.add(text);
   } else {
-    out.add_folded(text);
+    const size_t quote = std::min(text.find_first_of("'\""), text.size());  // also WSTRING#"x"
+    if (quote != 0) out.add_folded(text.substr(0, quote));
+    if (quote != text.size()) out.add(text.substr(quote));
   }
 }
 
@@ -100,24 +100,29 @@ bool is_quote(char c) { return c == '\'' || c == '"'; }
 // An operand as written: without blanks that separate no words, and in one case but for strings.
 void add_operand(Content& out, std::string_view text) {
   char quote = 0;
+  bool escaped = false;  // behind a `$`
+  bool blank = false;
   std::string kept;
   for (const char c : text) {
-    if (quote != 0) {
-      quote = c == quote ? 0 : quote;
-    } else if (is_quote(c)) {
-      out.add_folded(kept);
-      kept.clear();
-      quote = c;
-    } else if (c == ' ' || c == '\t' || c == '\n' || c == '\r') {
-      if (!kept.empty()) out.add_folded(kept);
-      kept.clear();
+    const bool begins = quote == 0 && is_quote(c);
+    if (quote == 0 && (c == ' ' || c == '\t' || c == '\n' || c == '\r')) {
+      blank = true;
       continue;
     }
-    kept += c;
-    if (quote == 0 && is_quote(c)) {
-      out.add(kept);
+    const bool apart = blank && !kept.empty() && is_word_char(kept.back()) && is_word_char(c);
+    if (begins || apart) {
+      out.add_folded(kept);
       kept.clear();
     }
+    blank = false;
+    kept += c;
+    const bool ends = quote != 0 && c == quote && !escaped;
+    escaped = quote != 0 && c == '$' && !escaped;
+    if (begins) quote = c;
+    if (!ends) continue;
+    out.add(kept);
+    kept.clear();
+    quote = 0;
   }
   out.add_folded(kept);
 }
@@ -168,9 +173,11 @@ void add_pragma(Content& out, std::string_view text) {
 
 }  // namespace
 
-ir::SourceContent Parser::content_of(const Token* first, const PouDecl& pou) const {
+ir::SourceContent Parser::content_of(const Token* first, const PouDecl& pou,
+                                     std::span<const Token> head) const {
   const auto tokens = static_cast<size_t>(current_ - first);
   Content out(current_->begin - first->begin + tokens);
+  for (const Token& token : head) add_token(out, token.kind, text(token));
   for (uint32_t i = 0; i < pou.attributes.count; ++i) {
     const Attribute& attribute = tree_.attributes[pou.attributes.first + i];
     attribute_text(out, attribute.name.text, attribute.value);

@@ -68,6 +68,7 @@ void Parser::parse_member(PouDecl& owner, Range32 attributes) {
 // PROPERTY [PUBLIC ...] name : type GET ... END_GET SET ... END_SET END_PROPERTY. Without GET and
 // SET, statements are those of GET.
 void Parser::parse_property(PouDecl& owner, Range32 attributes) {
+  const Token* const first = current_;
   const Token opening = take();
   PouDecl head;
   head.kind = PouKind::kGetter;
@@ -86,7 +87,8 @@ void Parser::parse_property(PouDecl& owner, Range32 attributes) {
   open_.fill(0);
   open_[static_cast<uint8_t>(TokenKind::kEndProperty)] = 1;
   size_t members = owner.members.size();
-  while (parse_accessor(head, owner, members)) {
+  const std::span said(first, current_);
+  while (parse_accessor(head, said, owner, members)) {
   }
   open_ = open;
   if (owner.members.size() == members && kind() == TokenKind::kEndProperty) {
@@ -102,8 +104,10 @@ bool Parser::at_accessor() const {
   return !follows_a_name(next_kind());
 }
 
-// One GET or SET; false when there is none. Accessors of this property begin at `first`.
-bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
+// One GET or SET; false when there is none. `said`: the tokens of the head. Accessors of this
+// property begin at `first`.
+bool Parser::parse_accessor(const PouDecl& head, std::span<const Token> said, PouDecl& owner,
+                            size_t first) {
   if (accept(TokenKind::kSemicolon)) return true;
   Range32 attributes = take_attributes();
   bool explicit_accessor = at_accessor();
@@ -113,6 +117,7 @@ bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
   base::SourcePos begin = here();
   TokenKind end = kind() == TokenKind::kSet ? TokenKind::kEndSet : TokenKind::kEndGet;
   if (kind() == TokenKind::kSet) accessor.kind = PouKind::kSetter;
+  const Token* const begins = current_;
   const Token opening = *current_;
   if (explicit_accessor) {
     take();
@@ -128,6 +133,7 @@ bool Parser::parse_accessor(const PouDecl& head, PouDecl& owner, size_t first) {
   accept(end);
   accept(TokenKind::kSemicolon);
   accessor.span = span_from(begin);
+  accessor.content = content_of(begins, accessor, said);
   for (size_t i = first; i < owner.members.size(); ++i) {
     if (owner.members[i].kind != accessor.kind) continue;
     note_only(Code::kBadProperty, opening.span(),

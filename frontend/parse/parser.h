@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,7 +82,8 @@ class Parser {
   void skip_block(TokenKind end);  // the same, but not out of the POU
 
   // --- content.cc
-  ir::SourceContent content_of(const Token* first, const PouDecl& pou) const;
+  ir::SourceContent content_of(const Token* first, const PouDecl& pou,
+                               std::span<const Token> head = {}) const;
 
   // --- attributes.cc
   Range32 take_attributes();
@@ -314,7 +316,8 @@ class Parser {
   void parse_member(PouDecl& owner, Range32 attributes);
   void parse_property(PouDecl& owner, Range32 attributes);
   bool at_accessor() const;
-  bool parse_accessor(const PouDecl& head, PouDecl& owner, size_t first);
+  bool parse_accessor(const PouDecl& head, std::span<const Token> said, PouDecl& owner,
+                      size_t first);
 
   // --- configuration.cc
   void parse_configuration(Range32 attributes);

@@ -86,6 +86,61 @@ TEST(Content, E02_AMemberIsOfItsOwn) {
   EXPECT_NE(before["Pump.Start"], after["Pump.Start"]);
 }
 
+// Names of POUs whose identity differs.
+std::string other_ones(const std::string& before, const std::string& after) {
+  std::string out;
+  const Contents now = contents(after);
+  for (const auto& [name, identity] : contents(before)) {
+    EXPECT_TRUE(now.contains(name)) << name;
+    if (now.contains(name) && now.at(name) != identity) out += name + ' ';
+  }
+  return out;
+}
+
+TEST(Content, E02_AnAccessorIsOfItsOwn) {
+  const auto with = [](const std::string& type, const std::string& get, const std::string& set) {
+    return "FUNCTION_BLOCK Pump VAR n : INT; END_VAR PROPERTY Speed : " + type + " GET " + get +
+           " END_GET SET " + set + " END_SET END_PROPERTY END_FUNCTION_BLOCK\n";
+  };
+  const std::string before = with("INT", "Speed := n;", "n := Speed;");
+  EXPECT_EQ(other_ones(before, with("INT", "Speed := n + 1;", "n := Speed;")), "Pump.Speed.GET ");
+  EXPECT_EQ(other_ones(before, with("INT", "Speed := n;", "n := Speed + 1;")), "Pump.Speed.SET ");
+  EXPECT_EQ(other_ones(before, with("INT", "(* it *) speed:=N;", "n := Speed;")), "");
+  const std::string both = "Pump Pump.Speed.GET Pump.Speed.SET ";
+  EXPECT_EQ(other_ones(before, with("SINT", "Speed := n;", "n := Speed;")), both);
+}
+
+TEST(Content, E02_TheCaseOfStringsCountsOfEveryKind) {
+  const auto differ = [](const std::string& type, const std::string& one, const std::string& two) {
+    const std::string variable = "VAR_OUTPUT s : " + type + "; END_VAR";
+    const std::string drawing = "\nFBD\ns := ";
+    EXPECT_NE(pump(block(variable, "s := " + one + ";")),
+              pump(block(variable, "s := " + two + ";")))
+        << one;
+    EXPECT_NE(pump(block(variable, drawing + one + ";\nEND_FBD\n")),
+              pump(block(variable, drawing + two + ";\nEND_FBD\n")))
+        << one;
+  };
+  differ("WSTRING", "\"stop\"", "\"STOP\"");
+  differ("WSTRING", "WSTRING#\"stop\"", "WSTRING#\"STOP\"");
+  differ("STRING", "STRING#'stop'", "STRING#'STOP'");
+  differ("STRING", "'it$'s ab'", "'it$'s AB'");
+  differ("STRING", "'$$'", "'$$ '");
+  differ("WCHAR", "WCHAR#\"a\"", "WCHAR#\"A\"");
+  const std::string variable = "VAR_OUTPUT s : WSTRING; END_VAR";
+  EXPECT_EQ(pump(block(variable, "s := WSTRING#\"a\";")),
+            pump(block(variable, "S:=wstring#\"a\";")));
+}
+
+TEST(Content, E02_BlanksInOperandsAreNoPartOfIt) {
+  const auto with = [](const std::string& row) {
+    return pump(block(kVariables, "\nFBD\n" + row + "\nEND_FBD\n"));
+  };
+  EXPECT_EQ(with("y := MAX(x, 1);"), with("y := MAX( x,1 );"));
+  EXPECT_EQ(with("y := t[1] + x;"), with("y := t[ 1 ]+x;"));
+  EXPECT_NE(with("y := x MOD 2;"), with("y := x * 2;"));
+}
+
 TEST(Content, E02_OfADrawingCountsWhatItMeans) {
   const auto rung = [](const std::string& drawing) {
     return "FUNCTION_BLOCK Pump VAR_INPUT a, b : BOOL; END_VAR VAR_OUTPUT y : BOOL; END_VAR\n"
