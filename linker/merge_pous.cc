@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "base/name_case.h"
@@ -134,11 +135,67 @@ class PouMerger {
 
   // A unit of the target's own, whose code was made without the edit.
   Source stays(const Versions& pou, const std::string& unit) {
-    if (!unit.empty())
-      check_held(input_.target, *pou.target, [this](PartKind kind, const auto& name) {
-        return choice_.takes(kind, name) || choice_.drops(kind, name);
-      });
+    if (unit.empty()) {
+      check_made(input_.target.pous[*pou.target].name);
+    } else {
+      check_held(input_.target, *pou.target,
+                 [this](PartKind kind, const auto& name) { return is_edited(kind, name); });
+      check_generic(*pou.target);
+    }
     return Source::kTarget;
+  }
+
+  // `F(LREAL)`, which only the target needs, is the same source as `F(INT)` that the edit brings.
+  void check_generic(uint32_t pou) {
+    const std::string& name = input_.target.pous[pou].name;
+    const size_t bracket = name.find('(');
+    if (bracket == std::string::npos || input_.target.contents.empty()) return;
+    const auto sources = [&](const ir::Image& image) {
+      std::vector<base::Digest> out;
+      for (size_t i = 0; i < image.contents.size(); ++i) {
+        const std::string& other = image.pous[i].name;
+        const bool same = other.find('(') == bracket &&
+                          ir::same_name(other.substr(0, bracket), name.substr(0, bracket));
+        if (same) out.push_back(image.contents[i].identity);
+      }
+      return out;
+    };
+    std::vector<base::Digest> known = sources(input_.original);
+    known.push_back(input_.target.contents[pou].identity);
+    for (const base::Digest& source : sources(input_.edited)) {
+      if (std::ranges::find(known, source) != known.end()) continue;
+      refuse("the code of `" + name + "` was made of another `" + name.substr(0, bracket) + "`");
+      return;
+    }
+  }
+  bool is_edited(PartKind kind, const std::string& name) const {
+    return choice_.takes(kind, name) || choice_.drops(kind, name);
+  }
+
+  // `Pump.__RESET`, which only the target needs: for instances that are made anew at each call. It
+  // gives initial values, and calls FB_Init, of the block, of its bases and of what is in them.
+  void check_made(const std::string& made) {
+    const ir::TypeTable& types = input_.target.types;
+    std::vector<ir::TypeId> open;
+    const std::string owner = made.substr(0, std::min(made.rfind(".__"), made.size()));
+    for (uint32_t i = ir::kElementaryCount; i < types.size() && owner.size() < made.size(); ++i) {
+      if (ir::same_name(types[ir::TypeId(i)].name, owner)) open.push_back(ir::TypeId(i));
+    }
+    std::unordered_set<uint32_t> seen;
+    while (!open.empty()) {
+      const ir::TypeId id = open.back();
+      open.pop_back();
+      if (!seen.insert(id.index).second) continue;
+      const ir::Type& type = types[id];
+      const bool block = type.kind == ir::Kind::kFunctionBlock;
+      if (block && is_edited(PartKind::kUnit, type.name)) {
+        refuse("an instance of `" + owner + "` is made anew at each call here, with what `" +
+               type.name + "` was before the edit");
+      }
+      if ((block || type.kind == ir::Kind::kArray) && type.base.valid()) open.push_back(type.base);
+      if (!block && type.kind != ir::Kind::kStruct) continue;
+      for (const ir::Member& member : type.members) open.push_back(member.type);
+    }
   }
 
   // A unit that the edit brings, whose code was made without what the target has of its own.

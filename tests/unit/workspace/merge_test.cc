@@ -310,6 +310,39 @@ TEST(Merge, E10_RefusesACallerThatPassesAnotherDefault) {
   }
 }
 
+// What the target alone makes of the edited sources: instances of functions for its own types, and
+// what gives its own instances their values where they are made anew at each call.
+TEST(Merge, E10_RefusesWhatOnlyTheTargetMakesOfWhatIsEdited) {
+  Plant plant;
+  plant.own =
+      "FUNCTION Twice : ANY_NUM VAR_INPUT n : ANY_NUM; END_VAR Twice := n + n; END_FUNCTION\n"
+      "FUNCTION_BLOCK D VAR k : INT := 5; END_VAR k := k; END_FUNCTION_BLOCK\n"
+      "FUNCTION_BLOCK E EXTENDS D END_FUNCTION_BLOCK\n";
+  plant.variables += " m : INT; l : LREAL;";
+  plant.main += " m := Twice(m);";
+  const auto edited = [&](const char* from, const char* to) {
+    Plant next = plant;
+    next.own.replace(next.own.find(from), std::strlen(from), to);
+    return next;
+  };
+  const Plant twice = edited("n + n;", "n + n + n;");
+  const Plant five = edited(":= 5", ":= 6");
+  const Plant body = edited("k := k;", "k := k + 1;");
+  Plant own = plant;
+  own.main += " l := Twice(l);";
+  expect_refused(merged(plant, twice, own),
+                 "the code of `Twice(LREAL)` was made of another `Twice`");
+  EXPECT_TRUE(merged(plant, five, own).ok()) << "Twice is as it was";
+  for (const char* const local : {"D", "E", "ARRAY[0..1] OF E"}) {
+    own = plant;
+    own.own +=
+        std::string("FUNCTION Own : INT VAR d : ") + local + "; END_VAR Own := 1; END_FUNCTION\n";
+    own.main += " m := Own();";
+    expect_refused(merged(plant, five, own), "is made anew at each call here");
+  }
+  EXPECT_TRUE(merged(plant, body, plant).ok());
+}
+
 TEST(Merge, E10_RefusesATypeThatIsAnotherOneThere) {
   Plant plant;
   Plant next = plant;
