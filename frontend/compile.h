@@ -72,8 +72,8 @@ struct TestProgram {
 };
 // The STRING global that a failed assertion leaves its message in.
 inline constexpr const char* kTestMessage = "__TEST_MESSAGE";
-// The BOOL global that a test sets behind its SETUP when it has a TEARDOWN: then its instance is run
-// once more, whatever has ended it, and TEARDOWN is all that this run does.
+// The BOOL global that a test sets behind its SETUP when it has a TEARDOWN: its instance is then
+// run once more, whatever has ended it, and TEARDOWN is all that this run does.
 inline constexpr const char* kTestTeardown = "__TEST_TEARDOWN";
 std::optional<TestProgram> compile_tests(const base::SourceMap& sources,
                                          const CompileOptions& options,
