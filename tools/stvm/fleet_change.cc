@@ -27,12 +27,29 @@ FleetRow FleetChange::visit(const FleetMember& member) {
     base::Status fits = check_parts(edit_, seen->image, row);
     talk_.say(tools::part_edits_text(row.parts, true));
     if (!fits.ok()) return talk_.ended(std::move(row), FleetOutcome::kRefused, fits.error());
-    if (row.outcome == FleetOutcome::kHadIt) return row;
+    if (row.outcome == FleetOutcome::kHadIt) return had_it(*seen, std::move(row));
     SwitchOptions how = how_;
     if (member.allow_loss) how.switch_flags |= vm::kAllowLoss;
     row = change(how, *seen, std::move(row));
     if (!waits || !row.why || !others_change(*row.why)) return row;
   }
+}
+
+base::Error rolls_on_trial() {
+  return {base::Refusal::kChangePending,
+          "an edit is on trial there, and no roll-out begins on that; accept it or undo it first"};
+}
+
+// Perhaps on trial: what has been for some time is no canary, and --permanent ends it.
+FleetRow FleetChange::had_it(FleetSeen& seen, FleetRow row) {
+  if ((how_.switch_flags & vm::kPermanent) != 0) {
+    return make_final(edit_, how_, talk_, seen, std::move(row));
+  }
+  if (how_.guard.empty()) return row;  // no roll-out
+  base::Result<vm::StatusReport> status = seen.client.status();
+  if (!status.ok()) return talk_.failed(std::move(row), status.error());
+  if (status->edits == 0) return row;
+  return talk_.ended(std::move(row), FleetOutcome::kRefused, rolls_on_trial());
 }
 
 FleetRow FleetChange::finished(const SwitchOptions& how, FleetRow row,

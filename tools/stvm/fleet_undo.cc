@@ -32,6 +32,9 @@ base::Result<Outcome> undo_newest(const SwitchOptions& how, const FleetTalk& tal
   return outcome;
 }
 
+constexpr const char* kMakeFinal = "Make it final there?";
+constexpr const char* kNotFinal = "not accepted; it stays on trial";
+
 // "E2 by ann": those on trial below the newest edit of the file that are not of it.
 std::string others_below(const FleetEdits& edits) {
   std::string text;
@@ -100,11 +103,46 @@ FleetRow FleetUndo::visit(const FleetMember& member) {
   return row;
 }
 
-FleetAccept::FleetAccept(const FleetEdit& edit, SwitchOptions how, FleetAccess access)
-    : FleetVisit(edit, std::move(how), std::move(access), "Make it final there?",
-                 "not accepted; it stays on trial") {}
-
 // What lies below becomes final too, and that of others only where somebody has said so.
+FleetRow make_final(const FleetEdit& edit, const SwitchOptions& how, FleetTalk& talk,
+                    FleetSeen& seen, FleetRow row) {
+  base::Result<FleetEdits> edits = fleet_edits_on(seen.client, edit.digest);
+  if (!edits.ok()) return talk.failed(std::move(row), edits.error());
+  if (edits->here.empty()) {
+    row.outcome = without(edit, seen.image);
+    talk.say("this edit is not on trial here\n");
+    return row;
+  }
+  for (const std::string& name : edits->here) row.edits += (row.edits.empty() ? "" : ", ") + name;
+  const std::string others = others_below(*edits);
+  if (!others.empty()) talk.say("with it become final: " + others + "\n");
+  if (how.dry_run) {
+    row.outcome = FleetOutcome::kPossible;
+    return row;
+  }
+  if (!others.empty() && !how.ask) {
+    return talk.failed(
+        std::move(row),
+        {base::Refusal::kChangePending,
+         base::joined({"edits below it are on trial and would become final, too: ", others,
+                       "; accept or undo that there, or go without --yes"})});
+  }
+  if (how.ask) {
+    base::Status go = talk.ask(kMakeFinal, kNotFinal);
+    if (!go.ok()) return talk.ended(std::move(row), FleetOutcome::kCancelled, go.error());
+  }
+  // Undoes in the version that was looked at: whoever has changed it meanwhile is told so (R0301).
+  base::Result<base::Bytes> done =
+      seen.client.call({.command = vm::Command::kAccept, .names = {edits->here.front()}});
+  if (!done.ok()) return talk.failed(std::move(row), done.error());
+  row.outcome = FleetOutcome::kAccepted;
+  talk.say("accepted\n");
+  return row;
+}
+
+FleetAccept::FleetAccept(const FleetEdit& edit, SwitchOptions how, FleetAccess access)
+    : FleetVisit(edit, std::move(how), std::move(access), kMakeFinal, kNotFinal) {}
+
 FleetRow FleetAccept::visit(const FleetMember& member) {
   if (is_at_agent(member)) {
     return access_.agents->decide(AgentAct::kMakeFinal, edit_, how_, talk_, member);
@@ -113,38 +151,7 @@ FleetRow FleetAccept::visit(const FleetMember& member) {
   if (talk_.is_over()) return row;
   std::optional<FleetSeen> seen = see(access_, talk_, member, row);
   if (!seen) return row;
-  base::Result<FleetEdits> edits = fleet_edits_on(seen->client, edit_.digest);
-  if (!edits.ok()) return talk_.failed(std::move(row), edits.error());
-  if (edits->here.empty()) {
-    row.outcome = without(edit_, seen->image);
-    talk_.say("this edit is not on trial here\n");
-    return row;
-  }
-  for (const std::string& edit : edits->here) row.edits += (row.edits.empty() ? "" : ", ") + edit;
-  const std::string others = others_below(*edits);
-  if (!others.empty()) talk_.say("with it become final: " + others + "\n");
-  if (how_.dry_run) {
-    row.outcome = FleetOutcome::kPossible;
-    return row;
-  }
-  if (!others.empty() && !how_.ask) {
-    return talk_.failed(
-        std::move(row),
-        {base::Refusal::kChangePending,
-         base::joined({"edits below it are on trial and would become final, too: ", others,
-                       "; accept or undo that there, or go without --yes"})});
-  }
-  if (how_.ask) {
-    base::Status go = how_.confirm();
-    if (!go.ok()) return talk_.ended(std::move(row), FleetOutcome::kCancelled, go.error());
-  }
-  // Undoes in the version that was looked at: whoever has changed it meanwhile is told so (R0301).
-  base::Result<base::Bytes> done =
-      seen->client.call({.command = vm::Command::kAccept, .names = {edits->here.front()}});
-  if (!done.ok()) return talk_.failed(std::move(row), done.error());
-  row.outcome = FleetOutcome::kAccepted;
-  talk_.say("accepted\n");
-  return row;
+  return make_final(edit_, how_, talk_, *seen, std::move(row));
 }
 
 }  // namespace stvm

@@ -92,6 +92,7 @@ class FleetChange : public FleetVisit {
   FleetRow visit(const FleetMember& member) override;
 
  private:
+  FleetRow had_it(FleetSeen& seen, FleetRow row);
   FleetRow change(const SwitchOptions& how, FleetSeen& seen, FleetRow row);
   // E-25, E-26: each unit by itself; all or none of them.
   FleetRow change_in_steps(SwitchOptions how, FleetSeen& seen, FleetRow row);
@@ -107,7 +108,9 @@ class FleetUndo : public FleetVisit {
   FleetRow visit(const FleetMember& member) override;
 };
 
-// E-32: the edit becomes final where it is on trial.
+// E-32: the edit becomes final there where it is on trial.
+FleetRow make_final(const FleetEdit& edit, const SwitchOptions& how, FleetTalk& talk,
+                    FleetSeen& seen, FleetRow row);
 class FleetAccept : public FleetVisit {
  public:
   FleetAccept(const FleetEdit& edit, SwitchOptions how, FleetAccess access);
@@ -119,6 +122,8 @@ base::Status check_parts(const FleetEdit& edit, const ir::VerifiedImage& image, 
 // The same of parts that are known without the image; `table`: what was found of its own table.
 base::Status check_parts(const FleetEdit& edit, const std::vector<ir::Part>& here,
                          const base::Status& table, FleetRow& row);
+// X6: where an edit is on trial no roll-out begins.
+base::Error rolls_on_trial();
 // E-32: of the edit, or, without one, all that it has.
 FleetRow look_at(const FleetEdit* edit, const FleetAccess& access, const FleetTalk& talk,
                  const FleetMember& member);

@@ -239,6 +239,23 @@ TEST_F(FleetOfThree, E32_AcceptMakesItFinalAndNothingOfOthers) {
   EXPECT_EQ(outcomes(accept()), "had it, refused R0302, had it");
 }
 
+// The same again with --permanent, where it is on trial: that ends there, as by `accept`.
+TEST_F(FleetOfThree, E31_PermanentMakesFinalWhatIsOnTrial) {
+  ASSERT_TRUE(changes(fleet_, "two", project(1, 1, 9)).ok());
+  ASSERT_EQ(outcomes(change()), "done, done, done");
+  ASSERT_EQ(outcomes(change()), "had it, had it, had it");
+  EXPECT_EQ(edits(fleet_, "one"), "E1 ");
+  stvm::SwitchOptions how = quietly();
+  how.switch_flags |= vm::kPermanent;
+  stvm::FleetChange for_good(fleet_.edit(), how, fleet_.access());
+  std::vector<FleetRow> rows;
+  for (const auto& member : fleet_.members()) rows.push_back(for_good.visit(member));
+  EXPECT_EQ(outcomes(rows), "accepted, refused R0302, accepted");
+  EXPECT_EQ(edits(fleet_, "one"), "");
+  EXPECT_EQ(edits(fleet_, "two"), "E1 E2 ") << "with one of somebody else below it";
+  EXPECT_EQ(for_good.visit(fleet_.members()[0]).outcome, FleetOutcome::kHadIt);
+}
+
 // What was undone and brought again is still of the file; an edit of the same name that another
 // process made is not.
 TEST(FleetEdits, E32_AnEditIsKnownByItsNameAndItsVersions) {

@@ -66,6 +66,33 @@ TEST_F(Waves, X604_X605_X607_ACanaryThatFailsIsUndoneAndNobodyElseIsTouched) {
   }
 }
 
+// What somebody has brought before is no canary: nobody has watched it, and nobody accepts it.
+TEST_F(Waves, X602_NoRollOutBeginsWhereTheEditIsOnTrial) {
+  make(2, {}, "[roll]\nsoak = \"3s\"\n[[wave]]\ncount = 1\n[[wave]]\npercent = 100\n");
+  const stvm::FleetMember first = fleet_.members()[0];
+  stvm::SwitchOptions how = quietly();
+  how.switch_flags |= vm::kAllowLoss;
+  stvm::FleetChange change(fleet_.edit(), how, fleet_.access());
+  stvm::FleetRow row = change.visit(first);
+  EXPECT_EQ(row.outcome, stvm::FleetOutcome::kDone) << base::to_string(*row.why);
+  {
+    stvm::FleetRoll roll(plan_, fleet_.edit(), access(), ports());
+    const std::vector<stvm::FleetRow> rows = roll.check_all();
+    EXPECT_EQ(rows[0].outcome, stvm::FleetOutcome::kRefused);
+    EXPECT_EQ(rows[0].why->refusal, base::Refusal::kChangePending);
+    EXPECT_EQ(rows[1].outcome, stvm::FleetOutcome::kPossible);
+  }
+  ASSERT_TRUE(roll().ok());
+  EXPECT_EQ(states(), "refused skipped");
+  EXPECT_EQ(plan_.phase, RollPhase::kFailed);
+  EXPECT_EQ(plc(1).status().edits, 1u) << "it stays as it was";
+  // Accepted, it is what the edit makes.
+  EXPECT_EQ(stvm::FleetAccept(fleet_.edit(), quietly(), fleet_.access()).visit(first).outcome,
+            stvm::FleetOutcome::kAccepted);
+  stvm::FleetRoll again(plan_, fleet_.edit(), access(), ports());
+  EXPECT_EQ(again.check_all()[0].outcome, stvm::FleetOutcome::kHadIt);
+}
+
 TEST_F(Waves, X607_TheThirdWaveFailsAndAllAreTakenBack) {
   make(20, {5, 7}, four_waves("on_failure = \"undo-all\"\nmax_failed = 1\n"));
   ASSERT_TRUE(roll().ok());
