@@ -102,6 +102,12 @@ expect 1 fleet change --yes --sign office.key
 said '^one .*done'
 said 'R0404: its agent is not connected to the broker; the order waits for it'
 [ "$(running two)" = "$old" ] || fail "who ordered that?"
+# Nor does it start by what is asked meanwhile, and that takes it away neither.
+expect 1 fleet change --dry-run --sign office.key
+said '^one .*had it'
+said 'R0404: its agent is not connected to the broker, and no other one shows its program: noth'
+stvm fleet continue x.fleet --yes --sign office.key --allow-overrun >out 2>err || true
+said 'nothing new is ordered'
 # So does the broker, with all that it keeps.
 stop_broker
 start_broker

@@ -166,6 +166,7 @@ class Bench {
       sent_.emplace_back(target, out);
       return base::Result<base::Bytes>(out);
     };
+    ports.wall_s = [] { return int64_t{::time(nullptr)}; };
     ports.package = [this](const base::Bytes& running) {
       return stvm::make_package({{place_.fleet_file}, {}}, {}, running);
     };

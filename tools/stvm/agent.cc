@@ -1,6 +1,7 @@
 #include "tools/stvm/agent.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/joined.h"
 #include "ir/bytecode/verify.h"
@@ -16,9 +17,6 @@ base::ByteSpan text_bytes(std::string_view text) {
 }
 
 bool brings_edit(AgentAct act) { return act == AgentAct::kCheck || act == AgentAct::kBring; }
-
-// Of an order that may be tried again: nothing was decided by it.
-bool is_passing_away(const FleetRow& row) { return row.outcome == FleetOutcome::kUnreachable; }
 
 }  // namespace
 
@@ -38,9 +36,10 @@ void Agent::take(const mqtt::Event& event) {
   piece(message);
 }
 
-// The broker may have forgotten everything.
+// The broker may have forgotten everything; what it still holds is given again.
 void Agent::connected() {
   connected_ = true;
+  waits_ = false;
   ports_.say("connected to the broker");
   sent_about_.clear();
   sent_status_.clear();
@@ -54,29 +53,37 @@ void Agent::connected() {
 }
 
 void Agent::desired(base::ByteSpan payload) {
-  if (payload.empty()) return;  // somebody has taken it away
+  if (payload.empty()) {  // somebody has taken it away
+    waits_ = false;
+    return;
+  }
   const bool same = std::ranges::equal(payload, ports_.memory.order());
   if (same && !ports_.memory.answer().empty()) {
     (void)ports_.broker.publish(topics_.of(name_, kAgentAnswer), ports_.memory.answer(), true);
     return;
   }
-  if (same && order_) return;  // at work
   const base::Digest id = base::sha256(payload);
+  if (order_ && order_id_ == id) return;  // at work
   base::Result<AgentOrder> order = admit(payload);
-  if (!order.ok()) {
-    ports_.say("order refused: " + base::to_string(order.error()));
-    // What is late is known: the answer to what came after it stands.
-    if (order.error().refusal == base::Refusal::kReplayed) return;
-    AgentAnswer refusal;
-    refusal.order = id;
-    refusal.row.outcome = FleetOutcome::kRefused;
-    refusal.row.why = order.error();
-    (void)ports_.broker.publish(topics_.of(name_, kAgentAnswer), encode(refusal), false);
-    return;
+  if (!order.ok()) return say_refused(id, order.error());
+  if (is_question(order->act)) {
+    question_.assign(payload.begin(), payload.end());
+    if (order_) return;  // it waits until that has ended
+  } else {
+    waits_ = false;
   }
   forget_work();
-  order_id_ = id;
-  begin(std::move(*order));
+  begin(id, std::move(*order));
+}
+
+// The answer to what came before stands.
+void Agent::say_refused(const base::Digest& id, const base::Error& why) {
+  ports_.say("order refused: " + base::to_string(why));
+  AgentAnswer refusal;
+  refusal.order = id;
+  refusal.row.outcome = FleetOutcome::kRefused;
+  refusal.row.why = why;
+  (void)ports_.broker.publish(topics_.of(name_, kAgentAnswer), encode(refusal), false);
 }
 
 base::Result<AgentOrder> Agent::admit(base::ByteSpan payload) {
@@ -89,13 +96,16 @@ base::Result<AgentOrder> Agent::admit(base::ByteSpan payload) {
   base::Bytes content(payload.begin(), payload.end());
   base::Result<online_change::SignedFile> file = online_change::open_signed(content);
   if (!file.ok()) return file.error();
-  base::Status taken = take_statement(*file, payload);
+  base::Result<AgentOrder> order = decode_agent_order(content);
+  base::Status taken = take_statement(*file, payload, order.ok() && is_question(order->act));
   if (!taken.ok()) return taken.error();
-  return decode_agent_order(content);
+  return order;
 }
 
-// It is remembered before it is marked as taken: a crash between the two leaves it to be done.
-base::Status Agent::take_statement(const online_change::SignedFile& file, base::ByteSpan payload) {
+// It is remembered before it is marked as taken: a crash between the two leaves it to be done. A
+// question is neither: late or again, it changes nothing.
+base::Status Agent::take_statement(const online_change::SignedFile& file, base::ByteSpan payload,
+                                   bool asks) {
   const online_change::Statement& said = file.statement;
   if (said.target != name_) {
     return base::Error{base::Refusal::kOtherTarget,
@@ -104,20 +114,32 @@ base::Status Agent::take_statement(const online_change::SignedFile& file, base::
   }
   const int64_t now = ports_.wall_s();
   base::Result<Signed> who = ports_.trust.check(file, online_change::SignedKind::kOrder, now);
-  const bool begun = std::ranges::equal(payload, ports_.memory.order());
-  if (!who.ok() && who.error().refusal == base::Refusal::kReplayed && begun) {
+  const bool again = asks || std::ranges::equal(payload, ports_.memory.order());
+  if (!who.ok() && who.error().refusal == base::Refusal::kReplayed && again) {
     return ports_.trust.check_again({"the key of before", said}, now);
   }
   if (!who.ok()) return who.error();
+  if (asks) return base::Ok{};
   base::Status kept = ports_.memory.begin(payload);
   return kept.ok() ? ports_.trust.take(*who, now) : kept;
 }
 
-void Agent::begin(AgentOrder order) {
+void Agent::begin(const base::Digest& id, AgentOrder order) {
+  order_id_ = id;
   order_ = std::move(order);
-  about_.plan = order_->plan;
-  about_.trace = {};
+  if (!is_question(order_->act)) {
+    about_.plan = order_->plan;
+    about_.trace = {};
+  }
   go_on();
+}
+
+void Agent::begin_waiting() {
+  if (order_ || !connected_) return;
+  if (!question_.empty()) return desired(std::exchange(question_, {}));
+  if (!waits_ || !about_.trace.answers) return;
+  waits_ = false;
+  desired(base::Bytes(ports_.memory.order()));
 }
 
 void Agent::forget_work() {
@@ -186,12 +208,12 @@ void Agent::refuse(const base::Error& why) {
 }
 
 void Agent::carry_out() {
-  if (order_->act == AgentAct::kShow) return answer(show(), true);
+  if (order_->act == AgentAct::kShow) return answer(show(), false);
   base::Result<FleetEdit> edit = ports_.open_edit(fleet_);
   if (!edit.ok()) return refuse(edit.error());
   edit->matching = order_->matching;
   AgentAnswer done = do_it(*edit);
-  const bool kept = !is_passing_away(done.row);
+  const bool kept = done.ends() && !is_question(order_->act);
   answer(std::move(done), kept);
 }
 
@@ -234,7 +256,7 @@ AgentAnswer Agent::do_it(const FleetEdit& edit) {
   } else {
     out.row = FleetChange(edit, how, access).visit(member);
   }
-  out.trace = trace(order_->plan);
+  if (!how.dry_run) out.trace = trace(order_->plan);
   return out;
 }
 
@@ -281,9 +303,14 @@ void Agent::answer(AgentAnswer done, bool kept) {
       ports_.say("the answer cannot be kept: " + base::to_string(stored.error()));
     }
   }
+  const bool asked = is_question(order_->act);
+  const bool last = asked && base::sha256(question_) == done.order;
+  if (last) question_.clear();
   forget_work();
-  look();  // before the answer: who reads it can rely on what is said of the controller
+  say_state();  // before the answer: who reads it can rely on what is said of the controller
   (void)ports_.broker.publish(topics_.of(name_, kAgentAnswer), bytes, kept);
+  if (!asked) waits_ = !done.ends();
+  if (!question_.empty()) begin_waiting();
 }
 
 void Agent::look() {
@@ -291,6 +318,11 @@ void Agent::look() {
     return refuse({base::Refusal::kFileNotFound, "file " + base::short_hex(pieces_->file().digest) +
                                                      " does not come from the broker"});
   }
+  say_state();
+  begin_waiting();
+}
+
+void Agent::say_state() {
   base::Result<ControllerClient> client = ports_.connect();
   base::Result<vm::StatusReport> status =
       client.ok() ? client->status() : base::Result<vm::StatusReport>(client.error());
@@ -308,6 +340,7 @@ void Agent::look() {
     about_.parts = ir::parts_of(verified->image());
     if (auto facts = client->facts(); facts.ok()) facts_ = std::move(*facts);
   }
+  about_.edits = status->edits;
   if (!about_.plan.empty()) {
     about_.trace = find_plan(*client, about_.plan, about_.trace);
   } else {

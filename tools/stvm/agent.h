@@ -45,8 +45,11 @@ class Agent {
   void connected();
   void desired(base::ByteSpan payload);
   base::Result<AgentOrder> admit(base::ByteSpan payload);
-  base::Status take_statement(const online_change::SignedFile& file, base::ByteSpan payload);
-  void begin(AgentOrder order);
+  base::Status take_statement(const online_change::SignedFile& file, base::ByteSpan payload,
+                              bool asks);
+  void begin(const base::Digest& id, AgentOrder order);
+  // What has waited for the end of the work, or for the controller.
+  void begin_waiting();
   // The next file that is not here; done: the order is carried out.
   void go_on();
   void want(const AgentFile& file);
@@ -60,7 +63,10 @@ class Agent {
   PlanTrace trace(const std::string& plan);
   // Kept: it is said again to whoever repeats the order.
   void answer(AgentAnswer answer, bool kept);
+  void say_refused(const base::Digest& id, const base::Error& why);
   void refuse(const base::Error& why);
+  // What the controller is and has, where it is another than before.
+  void say_state();
   // Null: the controller does not answer.
   void publish_state(const vm::StatusReport* status);
 
@@ -71,6 +77,8 @@ class Agent {
 
   base::Digest order_id_{};          // of what is at work
   std::optional<AgentOrder> order_;  // at work
+  base::Bytes question_;             // the last one, until it is answered
+  bool waits_ = false;               // the order that is remembered, for its controller
   std::optional<AgentPieces> pieces_;
   int64_t waits_since_ms_ = 0;
   base::Bytes fleet_;  // the last fleet file that came, and its hash

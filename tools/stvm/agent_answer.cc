@@ -52,6 +52,7 @@ constexpr auto about_fields = [](auto& a, auto& about) {
   a.rows(about.parts, 37, part_fields);
   a(about.plan);
   trace_fields(a, about.trace);
+  a.added(about.edits);
 };
 
 // As it travels: an error by its code, so that versions of the tools need not agree on numbers.

@@ -19,6 +19,7 @@ struct AgentAbout {
   std::vector<ir::Part> parts;  // E-02, E-04
   std::string plan;             // of the last order
   PlanTrace trace;              // what became of it
+  uint64_t edits = 0;           // on trial there, whoever has brought them
 };
 
 struct AgentAnswer {
@@ -26,6 +27,8 @@ struct AgentAnswer {
   FleetRow row;          // without `has`, `table` and `mixtures`
   PlanTrace trace;
   AgentFile shown;  // by kShow
+  // The order is over: it is not done later. Else it waits until its controller answers.
+  bool ends() const { return row.outcome != FleetOutcome::kUnreachable; }
 };
 
 base::Bytes encode(const AgentAbout& about);

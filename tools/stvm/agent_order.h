@@ -1,6 +1,8 @@
 // What an agent is told to do (F-02): the one message that its controller's topic holds. It is the
 // content of a signed file (SignedKind::kOrder), for that controller alone. It says what is wanted,
-// not what is to be done next: an order that is lost, repeated or late changes nothing.
+// not what is to be done next: an order that is lost, repeated or late changes nothing. A question
+// is written like an order, but changes nothing at the controller, and the topic does not hold it:
+// what waits there goes on waiting.
 #pragma once
 
 #include <string>
@@ -19,6 +21,9 @@ enum class AgentAct : uint8_t {
   kTakeBack,   // it goes again
 };
 inline constexpr AgentAct kLastAgentAct = AgentAct::kTakeBack;
+constexpr bool is_question(AgentAct act) {
+  return act == AgentAct::kShow || act == AgentAct::kCheck;
+}
 
 // A file that the broker or a server holds in pieces, by its SHA-256.
 struct AgentFile {

@@ -14,9 +14,10 @@ namespace {
 using base::Refusal;
 using std::chrono::milliseconds;
 
-constexpr int64_t kOfflineMs = 2000;  // for the answer of one that is not connected
 constexpr int64_t kBetweenEventsMs = 100;
 constexpr int64_t kLastWordMs = 5000;  // for what is on its way to the broker at the end
+constexpr int64_t kOthersMs = 2000;    // for what the broker knows of the others
+constexpr const char* kNobodyShows = ", and no other one shows its program: nothing new is ordered";
 
 base::Error not_reached(std::string text) { return {Refusal::kNotRunning, std::move(text)}; }
 
@@ -31,15 +32,8 @@ FleetAgents::FleetAgents(Settings settings, FleetAgentsPorts ports,
   pump_ = std::thread([this] { pump(); });
 }
 
-// What nobody waits for any more is taken from the broker.
 FleetAgents::~FleetAgents() {
-  if (!anything_waits() && settings_.files.empty()) {
-    for (const auto& [digest, file] : put_) {
-      for (uint64_t at = 0; at * kAgentPiece < file.size; ++at) {
-        (void)ports_.broker->publish(settings_.topics.file(digest, std::to_string(at)), {}, true);
-      }
-    }
-  }
+  clear_up();
   (void)ports_.broker->flush(std::min(settings_.patience_ms, kLastWordMs));
   stops_ = true;
   pump_.join();
@@ -97,13 +91,39 @@ base::Result<AgentFile> FleetAgents::fleet_file(const FleetEdit& edit) {
   return file;
 }
 
+// Those that are there and run it; as soon as one is known, or all are.
+std::vector<std::string> FleetAgents::who_runs(const base::Digest& running,
+                                               const FleetMember& first) {
+  std::unique_lock<std::mutex> held(mutex_);
+  std::vector<std::string> out;
+  const auto found = [&] {
+    bool all = true;
+    out.clear();
+    for (const auto& [name, known] : known_) {
+      all = all && known.about;
+      if (!known.about || !known.online || known.about->running != running) continue;
+      out.insert(name == first.place ? out.begin() : out.end(), name);
+    }
+    return all || !out.empty();
+  };
+  came_.wait_for(held, milliseconds(std::min(settings_.patience_ms, kOthersMs)), found);
+  return out;
+}
+
 // The program is asked of one controller that runs it.
 base::Result<FleetAgents::Program*> FleetAgents::program_of(const base::Digest& running,
                                                             const FleetMember& member) {
   const std::lock_guard<std::mutex> one(making_);
   const auto found = programs_.find(running);
   if (found != programs_.end()) return &found->second;
-  base::Result<base::Bytes> bytes = shown(member, running);
+  base::Result<base::Bytes> bytes = not_reached("its agent is not connected to the broker");
+  for (const std::string& name : who_runs(running, member)) {
+    bytes = shown(name, running);
+    if (bytes.ok() || bytes.error().refusal != Refusal::kNotRunning) break;
+  }
+  if (!bytes.ok() && bytes.error().refusal == Refusal::kNotRunning) {
+    return not_reached(bytes.error().text + kNobodyShows);
+  }
   if (!bytes.ok()) return bytes.error();
   base::Result<ir::VerifiedImage> image = ir::verify(*bytes);
   if (!image.ok()) return image.error();
@@ -114,13 +134,13 @@ base::Result<FleetAgents::Program*> FleetAgents::program_of(const base::Digest& 
   return &programs_.emplace(running, std::move(program)).first->second;
 }
 
-base::Result<base::Bytes> FleetAgents::shown(const FleetMember& member,
+base::Result<base::Bytes> FleetAgents::shown(const std::string& agent,
                                              const base::Digest& running) {
   AgentOrder order;
   order.act = AgentAct::kShow;
   order.plan = settings_.plan;
   order.base = running;
-  base::Result<AgentAnswer> answer = ask(order, member);
+  base::Result<AgentAnswer> answer = ask(order, agent);
   if (!answer.ok()) return answer.error();
   if (answer->row.why) return *answer->row.why;
   const AgentFile file = answer->shown;
@@ -138,9 +158,7 @@ base::Result<base::Bytes> FleetAgents::shown(const FleetMember& member,
   pieces_.reset();
   held.unlock();
   (void)ports_.broker->unsubscribe(pieces);
-  for (uint64_t at = 0; at * kAgentPiece < file.size; ++at) {
-    (void)ports_.broker->publish(settings_.topics.file(file.digest, std::to_string(at)), {}, true);
-  }
+  clear(file);
   return bytes;
 }
 
@@ -174,49 +192,9 @@ AgentOrder FleetAgents::order_of(AgentAct act, const FleetEdit& edit, const Swit
   return order;
 }
 
-base::Result<base::Digest> FleetAgents::send(const AgentOrder& order, const FleetMember& member) {
-  base::Result<base::Bytes> order_signed = ports_.sign(encode(order), member.place, settings_.plan);
-  if (!order_signed.ok()) return order_signed.error();
-  const base::Digest id = base::sha256(*order_signed);
-  {
-    const std::lock_guard<std::mutex> one(mutex_);
-    known_[member.place].waits_for = id;
-  }
-  base::Status sent =
-      ports_.broker->publish(settings_.topics.of(member.place, kAgentDesired), *order_signed, true);
-  if (!sent.ok()) return sent.error();
-  return id;
-}
-
-base::Result<AgentAnswer> FleetAgents::ask(const AgentOrder& order, const FleetMember& member) {
-  base::Result<base::Digest> id = send(order, member);
-  if (!id.ok()) return id.error();
-  std::unique_lock<std::mutex> held(mutex_);
-  Known& known = known_[member.place];
-  const bool online = known.online;
-  const auto answered = [&] { return known.answer && known.answer->order == *id; };
-  const int64_t ms = online ? settings_.patience_ms + order.window_ms
-                            : std::min(settings_.patience_ms, kOfflineMs);
-  if (!came_.wait_for(held, milliseconds(ms), answered)) {
-    return not_reached(online ? "its agent does not answer"
-                              : "its agent is not connected to the broker");
-  }
-  if (known.about && order.act != AgentAct::kShow) {
-    known.about->plan = order.plan;
-    known.about->trace = known.answer->trace;
-  }
-  return *known.answer;
-}
-
 FleetRow FleetAgents::finished(FleetRow row, const base::Result<AgentAnswer>& answer,
                                const FleetTalk& talk) const {
-  if (!answer.ok()) {
-    const base::Error& why = answer.error();
-    if (why.refusal != Refusal::kNotRunning) return talk.failed(std::move(row), why);
-    return talk.failed(std::move(row),
-                       {why.refusal, why.text + "; the order waits for it at the broker, a day "
-                                                "long, and an undo takes it back"});
-  }
+  if (!answer.ok()) return talk.failed(std::move(row), answer.error());
   const FleetRow& there = answer->row;
   if (there.from != base::Digest{}) row.from = there.from;
   row.edits = there.edits;
@@ -265,7 +243,15 @@ FleetRow FleetAgents::change(const FleetEdit& edit, SwitchOptions how, FleetTalk
   base::Status fits = check_parts(edit, (*program)->image, row);
   talk.say(tools::part_edits_text(row.parts, true));
   if (!fits.ok()) return talk.ended(std::move(row), FleetOutcome::kRefused, fits.error());
-  if (row.outcome == FleetOutcome::kHadIt) return row;
+  if (row.outcome == FleetOutcome::kHadIt) {
+    const bool on_trial = known->about->edits != 0;
+    if (on_trial && !how.guard.empty()) {
+      return talk.ended(std::move(row), FleetOutcome::kRefused, rolls_on_trial());
+    }
+    const bool for_good = on_trial && (how.switch_flags & vm::kPermanent) != 0;
+    if (!for_good || how.dry_run) return row;
+    return decided(std::move(row), AgentAct::kMakeFinal, edit, how, talk, member);
+  }
   if (!edit.steps.empty() && !edit.steps_if_needed) {
     return talk.ended(std::move(row), FleetOutcome::kRefused,
                       {Refusal::kUsage,
@@ -287,14 +273,14 @@ FleetRow FleetAgents::change(const FleetEdit& edit, SwitchOptions how, FleetTalk
   order.base = row.from;
   order.package = *package;
   if (how.dry_run || how.ask) {
-    base::Result<AgentAnswer> possible = ask(order, member);
+    base::Result<AgentAnswer> possible = ask(order, member.place);
     const bool ends = how.dry_run || !possible.ok() || possible->row.why;
     if (ends) return finished(std::move(row), possible, talk);
     base::Status go = talk.ask("Start it there?", "not switched; the old program runs on");
     if (!go.ok()) return talk.ended(std::move(row), FleetOutcome::kCancelled, go.error());
   }
   order.act = AgentAct::kBring;
-  return finished(std::move(row), ask(order, member), talk);
+  return finished(std::move(row), ask(order, member.place), talk);
 }
 
 FleetRow FleetAgents::decide(AgentAct act, const FleetEdit& edit, const SwitchOptions& how,
@@ -305,6 +291,12 @@ FleetRow FleetAgents::decide(AgentAct act, const FleetEdit& edit, const SwitchOp
   if (!known.ok()) return talk.failed(std::move(row), known.error());
   row.program = known->about->program;
   row.from = known->about->running;
+  return decided(std::move(row), act, edit, how, talk, member);
+}
+
+FleetRow FleetAgents::decided(FleetRow row, AgentAct act, const FleetEdit& edit,
+                              const SwitchOptions& how, FleetTalk& talk,
+                              const FleetMember& member) {
   base::Result<AgentFile> fleet = fleet_file(edit);
   if (!fleet.ok()) return talk.failed(std::move(row), fleet.error());
   if (how.ask) {
@@ -314,13 +306,16 @@ FleetRow FleetAgents::decide(AgentAct act, const FleetEdit& edit, const SwitchOp
                                       : "not accepted; it stays on trial");
     if (!go.ok()) return talk.ended(std::move(row), FleetOutcome::kCancelled, go.error());
   }
-  return finished(std::move(row), ask(order_of(act, edit, how, *fleet), member), talk);
+  return finished(std::move(row), ask(order_of(act, edit, how, *fleet), member.place), talk);
 }
 
 void FleetAgents::withdraw(const FleetEdit& edit, const SwitchOptions& how,
                            const FleetMember& member) {
   base::Result<AgentFile> fleet = fleet_file(edit);
-  if (fleet.ok()) (void)send(order_of(AgentAct::kTakeBack, edit, how, *fleet), member);
+  if (!fleet.ok()) return;
+  const AgentOrder order = order_of(AgentAct::kTakeBack, edit, how, *fleet);
+  base::Result<base::Bytes> order_signed = signed_for(order, member.place);
+  if (order_signed.ok()) (void)give(member.place, *order_signed);
 }
 
 }  // namespace stvm

@@ -23,6 +23,7 @@ struct FleetAgentsPorts {
   std::function<base::Result<base::Bytes>(base::ByteSpan order, const std::string& target,
                                           const std::string& plan)>
       sign;
+  std::function<int64_t()> wall_s;  // UTC, since 1970
   // Of the edit, for that program; signed.
   std::function<base::Result<base::Bytes>(const base::Bytes& running)> package;
 };
@@ -59,8 +60,20 @@ class FleetAgents {
   struct Known {
     bool online = false;
     std::optional<AgentAbout> about;
+    std::optional<base::Digest> waits_for;  // its last order, while that is not over
+  };
+  // What somebody waits for an answer to.
+  struct Asked {
+    std::string agent;
+    base::Bytes question;  // asked again when the agent comes back; empty: an order, which is kept
     std::optional<AgentAnswer> answer;
-    std::optional<base::Digest> waits_for;  // its last order, while that has no answer
+  };
+  // An order that the broker holds, whoever has given it.
+  struct Held {
+    base::Digest id{};
+    int64_t expires_s = 0;
+    std::vector<AgentFile> files;  // that the broker holds for it
+    bool over = false;             // by its answer
   };
   struct Program {
     base::Bytes bytes;
@@ -71,18 +84,27 @@ class FleetAgents {
   void pump();
   void take(const mqtt::Event& event);
   void take(const mqtt::Message& message);
+  void take_order(const std::string& agent, base::ByteSpan payload);
+  void take_answer(const std::string& agent, AgentAnswer answer);
   void subscribe_all();
-  bool anything_waits();
+  void order_is_over(const std::string& agent, const base::Digest& id);
+  void clear_up();
+  void clear(const AgentFile& file);
   base::Result<Known> wait_for(const FleetMember& member);
   base::Result<Program*> program_of(const base::Digest& running, const FleetMember& member);
-  base::Result<base::Bytes> shown(const FleetMember& member, const base::Digest& running);
+  std::vector<std::string> who_runs(const base::Digest& running, const FleetMember& first);
+  base::Result<base::Bytes> shown(const std::string& agent, const base::Digest& running);
   base::Result<AgentFile> package_for(Program& program);
   base::Result<AgentFile> fleet_file(const FleetEdit& edit);
   base::Result<AgentFile> put(base::ByteSpan file);
   AgentOrder order_of(AgentAct act, const FleetEdit& edit, const SwitchOptions& how,
                       const AgentFile& fleet) const;
-  base::Result<base::Digest> send(const AgentOrder& order, const FleetMember& member);
-  base::Result<AgentAnswer> ask(const AgentOrder& order, const FleetMember& member);
+  base::Result<base::Bytes> signed_for(const AgentOrder& order, const std::string& agent);
+  base::Status give(const std::string& agent, const base::Bytes& order_signed);
+  // A question is asked of who is there; an order waits at the broker for who is not.
+  base::Result<AgentAnswer> ask(const AgentOrder& order, const std::string& agent);
+  FleetRow decided(FleetRow row, AgentAct act, const FleetEdit& edit, const SwitchOptions& how,
+                   FleetTalk& talk, const FleetMember& member);
   FleetRow finished(FleetRow row, const base::Result<AgentAnswer>& answer,
                     const FleetTalk& talk) const;
 
@@ -91,7 +113,11 @@ class FleetAgents {
   std::mutex mutex_;  // of what comes
   std::condition_variable came_;
   std::map<std::string, Known> known_;  // by the name at the broker
-  std::optional<AgentPieces> pieces_;   // of an image that is being shown
+  std::map<base::Digest, Asked> asked_;
+  std::map<std::string, Held> held_;  // likewise, of all that are there
+  std::vector<Held> replaced_;        // by orders of this run
+  bool has_ordered_ = false;
+  std::optional<AgentPieces> pieces_;  // of an image that is being shown
 
   std::mutex making_;  // one program or package at a time
   std::map<base::Digest, Program> programs_;

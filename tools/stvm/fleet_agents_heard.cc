@@ -9,17 +9,20 @@ namespace stvm {
 
 using std::chrono::milliseconds;
 
+// In this order: whose `about` is known, of that one the rest is known, too.
 void FleetAgents::subscribe_all() {
   std::vector<std::string> names;
   {
     const std::lock_guard<std::mutex> one(mutex_);
+    held_.clear();
+    (void)ports_.broker->subscribe(settings_.topics.of("+", kAgentDesired));
     for (const auto& [name, known] : known_) names.push_back(name);
     if (pieces_) {
       (void)ports_.broker->subscribe(settings_.topics.file(pieces_->file().digest, "+"));
     }
   }
   for (const std::string& name : names) {
-    for (const char* what : {kAgentOnline, kAgentAbout, kAgentAnswer}) {
+    for (const char* what : {kAgentOnline, kAgentAnswer, kAgentAbout}) {
       (void)ports_.broker->subscribe(settings_.topics.of(name, what));
     }
   }
@@ -50,21 +53,34 @@ void FleetAgents::take(const mqtt::Message& message) {
   const size_t slash = message.topic.rfind('/');
   const size_t before = slash == std::string::npos ? slash : message.topic.rfind('/', slash - 1);
   if (before == std::string::npos) return;
-  const auto found = known_.find(message.topic.substr(before + 1, slash - before - 1));
+  const std::string name = message.topic.substr(before + 1, slash - before - 1);
+  const std::string what = message.topic.substr(slash + 1);
+  if (what == kAgentDesired) return take_order(name, message.payload);
+  const auto found = known_.find(name);
   if (found == known_.end()) return;
   Known& known = found->second;
-  const std::string what = message.topic.substr(slash + 1);
   if (what == kAgentOnline) {
     known.online = message.payload.size() == 1 && message.payload[0] == '1';
+    for (const auto& [id, asked] : asked_) {
+      if (!known.online || asked.agent != name || asked.question.empty()) continue;
+      (void)ports_.broker->publish(settings_.topics.of(name, kAgentDesired), asked.question, false);
+    }
   } else if (what == kAgentAbout) {
     base::Result<AgentAbout> about = decode_agent_about(message.payload);
     if (about.ok()) known.about = std::move(*about);
   } else if (what == kAgentAnswer) {
     base::Result<AgentAnswer> answer = decode_agent_answer(message.payload);
-    if (!answer.ok()) return;
-    known.answer = std::move(*answer);
-    if (known.waits_for == known.answer->order) known.waits_for.reset();
+    if (answer.ok()) take_answer(name, std::move(*answer));
   }
+}
+
+void FleetAgents::take_answer(const std::string& agent, AgentAnswer answer) {
+  Known& known = known_[agent];
+  if (answer.ends() && known.waits_for == answer.order) known.waits_for.reset();
+  const auto held = held_.find(agent);
+  if (held != held_.end() && held->second.id == answer.order) held->second.over = answer.ends();
+  const auto asked = asked_.find(answer.order);
+  if (asked != asked_.end()) asked->second.answer = std::move(answer);
 }
 
 base::Result<FleetAgents::Known> FleetAgents::wait_for(const FleetMember& member) {
@@ -80,12 +96,6 @@ base::Result<FleetAgents::Known> FleetAgents::wait_for(const FleetMember& member
 bool FleetAgents::is_online(const FleetMember& member) {
   base::Result<Known> known = wait_for(member);
   return known.ok() && known->online;
-}
-
-bool FleetAgents::anything_waits() {
-  const std::lock_guard<std::mutex> one(mutex_);
-  return std::ranges::any_of(
-      known_, [](const auto& one_of) { return one_of.second.waits_for.has_value(); });
 }
 
 }  // namespace stvm

@@ -1,6 +1,7 @@
 #include "tools/stvm/fleet_broker.h"
 
 #include <algorithm>
+#include <ctime>
 
 #include "tools/common/child.h"
 #include "tools/common/files.h"
@@ -121,6 +122,7 @@ base::Status reach_agents(const FleetBrokerUse& use, const std::vector<FleetMemb
                                const std::string& plan) {
     return sign_for_agent(order, target, plan, key);
   };
+  ports.wall_s = [] { return int64_t{::time(nullptr)}; };
   ports.package = [make = access.package, key = use.key](const base::Bytes& running) {
     base::Result<base::Bytes> package = make(running, 0);
     return package.ok() ? sign_package(*package, key) : package;

@@ -35,10 +35,19 @@ base::Status check_revoked(const TrustRecord& record, const base::Digest& key,
   return base::Error{base::Refusal::kKeyEnded, "key " + name + " is revoked"};
 }
 
+// An order takes the place of any order before it, whatever plan each of them is part of.
+std::string line_of(const Statement& said) {
+  return said.kind == SignedKind::kOrder ? ":orders" : said.plan;
+}
+
+PlanMark mark_of(const Statement& said) {
+  return {line_of(said), said.sequence, said.made_s, said.content};
+}
+
 // A file that was taken last may come again where that does nothing: at a start.
 base::Status check_sequence(TrustRecord& record, const Signed& what) {
   const Statement& said = what.statement;
-  const PlanMark* const mark = record.find(said.plan);
+  const PlanMark* const mark = record.find(line_of(said));
   if (mark == nullptr) {
     if (said.made_s > record.dropped_s) return base::Ok{};
     return base::Error{base::Refusal::kReplayed, "signed by " + what.by + " at " +
@@ -48,6 +57,11 @@ base::Status check_sequence(TrustRecord& record, const Signed& what) {
   if (said.sequence > mark->sequence) return base::Ok{};
   const bool same = said.sequence == mark->sequence && said.content == mark->content;
   if (same && said.kind == SignedKind::kImage) return base::Ok{};
+  if (said.kind == SignedKind::kOrder) {
+    return base::Error{base::Refusal::kReplayed,
+                       "signed by " + what.by + " at " + tools::utc_text(said.made_s) +
+                           "; a later order was taken, of " + tools::utc_text(mark->made_s)};
+  }
   return base::Error{base::Refusal::kReplayed, "signed by " + what.by + " as sequence " +
                                                    std::to_string(said.sequence) + " of plan " +
                                                    said.plan + ", which has come to " +
@@ -112,7 +126,7 @@ base::Status KeyTrust::take(const Signed& what, int64_t now_s) {
   good = check_sequence(all->record, what);
   if (!good.ok()) return good;
   all->record.latest_s = all->now_s;
-  all->record.mark({said.plan, said.sequence, said.made_s, said.content});
+  all->record.mark(mark_of(said));
   return store_.keep_trust(all->record);
 }
 
@@ -135,9 +149,8 @@ base::Result<std::string> KeyTrust::revoke(const SignedFile& file, base::ByteSpa
   if (all->record.revoked.size() > online_change::kMostRevokedKept) {
     return base::Error{base::Refusal::kTooMany, "more than 1,024 revoked keys"};
   }
-  const Statement& said = file.statement;
   all->record.latest_s = all->now_s;
-  all->record.mark({said.plan, said.sequence, said.made_s, said.content});
+  all->record.mark(mark_of(file.statement));
   base::Status kept = store_.keep_trust(all->record);
   if (!kept.ok()) return kept.error();
   return names + " by " + signer->by;

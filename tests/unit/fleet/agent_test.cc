@@ -77,6 +77,12 @@ class AgentOfOne : public ::testing::Test {
     return count;
   }
   uint64_t edits() { return fleet_.plc("line1").status().edits; }
+  FleetOutcome last_outcome() {
+    const auto said = stvm::decode_agent_answer(
+        hub_.last(kTopics.of("line1", stvm::kAgentAnswer)));
+    EXPECT_TRUE(said.ok());
+    return said->row.outcome;
+  }
   size_t answers() { return hub_.published(kTopics.of("line1", stvm::kAgentAnswer)); }
 
   std::optional<tools::TemporaryFolder> folder_;
@@ -125,8 +131,47 @@ TEST_F(AgentOfOne, F02_AnOrderThatComesAgainIsAnsweredAndNotDoneAgain) {
 
 TEST_F(AgentOfOne, F02_ACheckChangesNothingAndSaysWhatWouldBe) {
   give(order(AgentAct::kCheck), {});
-  EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kPossible) << agent_->log;
+  EXPECT_EQ(last_outcome(), FleetOutcome::kPossible) << agent_->log;
   EXPECT_EQ(switches(), 0u);
+}
+
+// A question is no order: it may come late, and it takes nothing from what is at work or was said.
+TEST_F(AgentOfOne, F02_AQuestionTakesNothingFromAnOrder) {
+  const stvm::AgentOrder change = order(AgentAct::kBring);
+  stvm::AgentOrder check = order(AgentAct::kCheck);
+  check.plan = "another";
+  const std::string topic = kTopics.file(change.package.digest, "0");
+  const base::Bytes piece = hub_.retained().at(topic);
+  hub_.publish(topic, {}, true);
+  const base::Bytes payload = give(change, {.sequence = 2});  // waits for its package
+  hub_.publish(kTopics.of("line1", stvm::kAgentDesired), sign_order(check, {.sequence = 1}), false);
+  agent_->work();
+  EXPECT_EQ(answers(), 0u) << agent_->log;
+  hub_.publish(topic, piece, true);
+  agent_->work();
+  EXPECT_EQ(switches(), 1u) << agent_->log;
+  EXPECT_EQ(answers(), 2u) << agent_->log;
+  EXPECT_EQ(last_outcome(), FleetOutcome::kHadIt) << agent_->log;
+  EXPECT_EQ(agent_->answer()->order, base::sha256(payload)) << "what was said to the order stays";
+  const auto about = stvm::decode_agent_about(hub_.retained().at("plant/1/line1/about"));
+  EXPECT_EQ(about->plan, change.plan);
+  EXPECT_TRUE(about->trace.on_trial);
+  EXPECT_EQ(about->edits, 1u);
+  // The other way round: the order comes first, and the question is answered after it.
+  check.base = about->running;
+  check.package = put(base::Bytes(100, 7));
+  const std::string other = kTopics.file(check.package.digest, "0");
+  const base::Bytes other_piece = hub_.retained().at(other);
+  hub_.publish(other, {}, true);
+  hub_.publish(kTopics.of("line1", stvm::kAgentDesired), sign_order(check, {.sequence = 3}), false);
+  agent_->work();
+  give(order(AgentAct::kTakeBack), {.sequence = 4});
+  EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kUndone) << agent_->log;
+  const size_t before = answers();
+  hub_.publish(other, other_piece, true);
+  agent_->work();
+  EXPECT_EQ(answers(), before + 1) << agent_->log;
+  EXPECT_EQ(last_outcome(), FleetOutcome::kRefused) << agent_->log;  // R0301: another one runs
 }
 
 TEST_F(AgentOfOne, F02_DecisionsEndTheTrialAndChangeNothingTwice) {
@@ -137,21 +182,22 @@ TEST_F(AgentOfOne, F02_DecisionsEndTheTrialAndChangeNothingTwice) {
   EXPECT_EQ(edits(), 0u);
   give(order(AgentAct::kTakeBack), {.sequence = 3});
   EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kHadItNot);
-  // The change of before comes late: it is known to be so, and the answer to what came after it
-  // stands.
-  const size_t before = answers();
+  // The change of before comes late: whoever sent it is told so, and the answer to what came after
+  // it stands.
+  const base::Digest last = agent_->answer()->order;
   desire(sign_order(change, {}));
   agent_->work();
   EXPECT_NE(agent_->log.find("R0425"), std::string::npos);
-  EXPECT_EQ(answers(), before);
+  EXPECT_EQ(last_outcome(), FleetOutcome::kRefused);
+  EXPECT_EQ(agent_->answer()->order, last);
   EXPECT_EQ(switches(), 1u);
   change.plan = "0badcaff";
   change.note = note("0badcaff");
-  give(change, {.sequence = 1});
+  give(change, {.sequence = 4});
   EXPECT_EQ(edits(), 1u) << agent_->log;
   stvm::AgentOrder accept = order(AgentAct::kMakeFinal);
   accept.plan = "0badcaff";
-  give(accept, {.sequence = 2});
+  give(accept, {.sequence = 5});
   EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kAccepted) << agent_->log;
   EXPECT_TRUE(agent_->answer()->trace.accepted);
   EXPECT_EQ(edits(), 0u);
@@ -249,8 +295,8 @@ TEST_F(AgentOfOne, F03_NothingIsDoneThatIsNotSignedForIt) {
 
 TEST_F(AgentOfOne, F03_AClockThatGoesBackMakesNoExpiredOrderGood) {
   const stvm::AgentOrder change = order(AgentAct::kBring);
-  give(order(AgentAct::kCheck), {.expires_s = fleet_test::kAgentNow + 10});
-  EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kPossible) << agent_->log;
+  give(order(AgentAct::kTakeBack), {.expires_s = fleet_test::kAgentNow + 10});
+  EXPECT_EQ(agent_->answer()->row.outcome, FleetOutcome::kHadItNot) << agent_->log;
   agent_->wall_s -= 10LL * 365 * 86'400;
   desire(sign_order(change, {.sequence = 2, .expires_s = fleet_test::kAgentNow}));
   agent_->work();
@@ -268,7 +314,8 @@ TEST_F(AgentOfOne, F02_AnAgentThatIsKilledGoesOnWithItsOrder) {
     change.note = note(change.plan);
     int left = cut;
     fleet_.before_message = [&] { return left-- > 0; };
-    give(change, {});
+    const uint64_t sequence = 1 + 2 * static_cast<uint64_t>(cut);
+    give(change, {.sequence = sequence});
     fleet_.before_message = {};
     agent_->kill();
     agent_->start();
@@ -280,7 +327,7 @@ TEST_F(AgentOfOne, F02_AnAgentThatIsKilledGoesOnWithItsOrder) {
     ASSERT_EQ(edits(), 1u) << cut << ": " << agent_->log;
     stvm::AgentOrder undo = order(AgentAct::kTakeBack);
     undo.plan = change.plan;
-    give(undo, {.sequence = 2});
+    give(undo, {.sequence = sequence + 1});
     ASSERT_EQ(edits(), 0u) << cut << ": " << agent_->log;
   }
 }
@@ -298,6 +345,7 @@ TEST_F(AgentOfOne, X608_WhatWasSaidBeforeAnOrderIsNoAnswerToIt) {
     const auto order = stvm::decode_agent_order(content);
     return base::Result<base::Bytes>(sign_order(*order, {.sequence = ++sequence}));
   };
+  ports.wall_s = [] { return fleet_test::kAgentNow; };
   ports.package = [&](const base::Bytes& running) { return fleet_.access().package(running, 0); };
   stvm::FleetAgents::Settings settings;
   settings.topics = kTopics;
@@ -308,7 +356,8 @@ TEST_F(AgentOfOne, X608_WhatWasSaidBeforeAnOrderIsNoAnswerToIt) {
   }  // until the tool has heard what the broker keeps
   EXPECT_TRUE(tool.look(member, "0badcafe").answers);
   stvm::FleetTalk talk(true);
-  const stvm::FleetRow row = tool.change(edit, fleet_test::quietly(), talk, member);
+  const stvm::FleetRow row =
+      tool.decide(AgentAct::kTakeBack, edit, fleet_test::quietly(), talk, member);
   EXPECT_EQ(row.outcome, FleetOutcome::kUnreachable);
   EXPECT_FALSE(tool.look(member, "0badcafe").answers);
   agent_->work();

@@ -63,12 +63,16 @@ class OneAgent {
  public:
   OneAgent(Fleet& fleet, Hub& hub, std::string name, std::string folder)
       : fleet_(fleet), hub_(hub), name_(std::move(name)), trust_(folder + "/" + name_) {
+    trust(kOffice);
+    start();
+  }
+  // From now on this key alone.
+  void trust(const online_change::PublicKey& key) {
     const std::string text =
-        "name = \"" + name_ + "\"\n[keys.office]\npublic = \"" + base::to_hex(kOffice) + "\"\n";
+        "name = \"" + name_ + "\"\n[keys.office]\npublic = \"" + base::to_hex(key) + "\"\n";
     EXPECT_TRUE(
         tools::write_file(trust_, {reinterpret_cast<const uint8_t*>(text.data()), text.size()})
             .ok());
-    start();
   }
   // As after `kill -9`: what is in memory is gone, and the broker publishes its will.
   void kill() {

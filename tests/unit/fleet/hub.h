@@ -49,6 +49,11 @@ class Hub {
     const std::lock_guard<std::mutex> one(mutex_);
     return published_[topic];
   }
+  // What was said there last, whether or not it is kept.
+  base::Bytes last(const std::string& topic) {
+    const std::lock_guard<std::mutex> one(mutex_);
+    return last_[topic];
+  }
   void publish(const std::string& topic, base::ByteSpan payload, bool retained) {
     const std::lock_guard<std::mutex> one(mutex_);
     send(topic, payload, retained);
@@ -57,9 +62,12 @@ class Hub {
  private:
   friend class HubBroker;
   static bool fits(const std::string& filter, const std::string& topic) {
-    if (!filter.ends_with("/+")) return filter == topic;
-    const std::string_view before(filter.data(), filter.size() - 1);
-    return topic.starts_with(before) && topic.find('/', before.size()) == std::string::npos;
+    const size_t plus = filter.find('+');
+    if (plus == std::string::npos) return filter == topic;
+    const std::string_view before(filter.data(), plus);
+    const std::string_view after = std::string_view(filter).substr(plus + 1);
+    return topic.starts_with(before) && topic.ends_with(after) &&
+           topic.find('/', plus) == (after.empty() ? std::string::npos : topic.size() - after.size());
   }
   void give(HubBroker& to, mqtt::Message message) {
     std::vector<mqtt::Message> all{message};
@@ -69,6 +77,7 @@ class Hub {
   void send(const std::string& topic, base::ByteSpan payload, bool retained) {
     ++published_[topic];
     base::Bytes bytes(payload.begin(), payload.end());
+    last_[topic] = bytes;
     if (retained) retained_[topic] = bytes;
     if (retained && bytes.empty()) retained_.erase(topic);
     for (HubBroker* to : connected_) {
@@ -82,6 +91,7 @@ class Hub {
   std::mutex mutex_;
   std::condition_variable came_;
   std::map<std::string, base::Bytes> retained_;
+  std::map<std::string, base::Bytes> last_;
   std::map<std::string, size_t> published_;
   std::set<HubBroker*> connected_;
 };
