@@ -196,17 +196,19 @@ TEST_F(WaitingOrders, F02_WhatWasRefusedIsNotDoneLater) {
     EXPECT_NE(why(row).find("R0422"), std::string::npos) << why(row);
   }
   EXPECT_TRUE(desired("one").empty());
-  // The key of before, so that its program is shown; its order is not trusted.
+  // Here an order is refused; a change asks for the program first.
   key_ = kOffice;
   agent("one").trust({9});
-  const FleetMember one = member("one");
+  const auto run = tool({"one"});
   {
     const Here here(*this, {"one"});
-    const FleetRow row = decide(AgentAct::kTakeBack, "one");
+    stvm::FleetTalk talk(true);
+    const FleetRow row =
+        run->decide(AgentAct::kTakeBack, edit_, quietly(), talk, member("one"));
     EXPECT_EQ(row.outcome, FleetOutcome::kRefused);
     EXPECT_NE(why(row).find("R0422"), std::string::npos) << why(row);
   }
-  EXPECT_TRUE(desired("one").empty());
+  EXPECT_TRUE(desired("one").empty()) << "already, though the run goes on";
 }
 
 // Its agent is there, and its controller is not: as for one that is away.
