@@ -118,6 +118,18 @@ said '"failed":2'
 expect 1 stc test pump.st wrong_test.st --format junit --output report.xml
 said '0 passed, 2 failed'
 grep -q '</testsuites>' report.xml || fail "no report"
+# What cannot be run is no pass, and the report of the run before does not stay.
+printf 'FUNCTION f : INT f := x; END_FUNCTION\n' >broken.st
+expect 1 stc test pump.st pump_test.st broken.st --format junit --output report.xml
+grep -q 'tests="1" failures="0" errors="1"' report.xml || fail "$(cat report.xml)"
+grep -q '<error type="E[0-9]*" message=.*>broken.st:1: ' report.xml || fail "$(cat report.xml)"
+expect 1 stc test pump.st pump_test.st broken.st --format tap
+said '^not ok 1 - broken.st:1 compiles'
+expect 7 stc test nothing_there.st --format junit --output report.xml
+grep -q '<error type="R0501" message="nothing_there.st: no such .*">nothing_there.st: no' report.xml ||
+  fail "$(cat report.xml)"
+expect 7 stc test nothing_there.st --output report.txt
+grep -q 'nothing_there.st: no such' report.txt || fail "no report"
 expect 2 stc test pump.st pump_test.st --format xml
 said 'is text, tap, junit or json, not .xml.'
 

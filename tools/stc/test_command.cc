@@ -79,7 +79,27 @@ std::string machine_form(const std::string& format, const Project& project, cons
   if (format == "json") return json_text(run);
   std::string out;
   for (const TestResult& result : run.results) out += test_text(result, project.sources, false);
-  return out + summary_text(run.results, false);
+  return run.ran ? out + summary_text(run.results, false) : out;
+}
+
+base::Status put_out_form(const tools::Options& options, const Project& project,
+                          const TestRun& run) {
+  const std::string format = options.text("--format", "text");
+  const std::string form = machine_form(format, project, run);
+  if (options.has("--output")) {
+    return tools::write_file(options.text("--output"), base::as_bytes(form));
+  }
+  if (format != "text") std::fputs(form.c_str(), stdout);
+  return base::Ok{};
+}
+
+// Nothing was run. Who reads a file with the form would find that of the run before there.
+base::Error not_run(const tools::Options& options, const Project& project, const TestRun& why,
+                    const base::Error& error) {
+  const bool in_form = options.has("--output") || options.text("--format", "text") != "json";
+  if (!in_form || options.has("--list")) return error;  // JSON has the messages themselves
+  base::Status written = put_out_form(options, project, why);
+  return written.ok() ? error : written.error();
 }
 
 void print_list(const std::vector<frontend::TestCase>& cases, bool json) {
@@ -113,7 +133,9 @@ base::Result<int> run_tests(const tools::Options& options) {
   base::Result<CoverageWishes> wishes = coverage_wishes(options);
   if (!wishes.ok()) return wishes.error();
   base::Result<Project> project = open_project(options, options.arguments());
-  if (!project.ok()) return project.error();
+  if (!project.ok()) {
+    return not_run(options, {}, run_of_mistake(project.error()), project.error());
+  }
   frontend::Coverage coverage;
   if (wishes->counts()) project->compile.coverage = &coverage;
   base::Diagnostics diagnostics = diagnostics_of(*project);
@@ -121,7 +143,11 @@ base::Result<int> run_tests(const tools::Options& options) {
   const bool json = format == "json" && diagnostics.has_errors() && !options.has("--output");
   report(*project, diagnostics,
          json ? base::DiagnosticFormat::kJson : base::DiagnosticFormat::kText);
-  if (!tests.ok()) return tests.error();
+  if (!tests.ok()) {
+    const TestRun why = diagnostics.has_errors() ? run_of_mistakes(diagnostics, project->sources)
+                                                 : run_of_mistake(tests.error());
+    return not_run(options, *project, why, tests.error());
+  }
   if (options.has("--list")) {
     base::Result<TestOrder> order = order_tests(tests->cases, options);
     if (!order.ok()) return order.error();
@@ -132,16 +158,10 @@ base::Result<int> run_tests(const tools::Options& options) {
   std::vector<uint64_t> hits;
   base::Result<TestRun> run =
       run_all(*tests, *project, options, text, wishes->counts() ? &hits : nullptr);
-  if (!run.ok()) return run.error();
+  if (!run.ok()) return not_run(options, *project, run_of_mistake(run.error()), run.error());
   const CoverageReport reached = coverage_report(coverage.sites(), hits, project->sources);
   if (wishes->counts()) run->coverage = &reached;
-  const std::string form = machine_form(format, *project, *run);
-  if (options.has("--output")) {
-    base::Status written = tools::write_file(options.text("--output"), base::as_bytes(form));
-    if (!written.ok()) return written.error();
-  } else if (!text) {
-    std::fputs(form.c_str(), stdout);
-  }
+  if (base::Status put = put_out_form(options, *project, *run); !put.ok()) return put.error();
   if (run->results.empty()) {
     std::fprintf(stderr, "stc: no test%s; a test is written TEST 'name' ... END_TEST\n",
                  options.has("--filter") ? " matches the filter" : " in these sources");

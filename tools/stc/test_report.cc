@@ -33,6 +33,10 @@ std::string seconds_text(double seconds) {
   return text;
 }
 
+std::string cause(const TestResult& result) {
+  return (result.file.empty() ? "" : place(result.file, result.line) + ": ") + result.text;
+}
+
 std::string trimmed_line(const base::SourceMap& sources, const std::string& file, uint32_t line) {
   for (uint32_t i = 0; i < sources.file_count(); ++i) {
     if (sources.file_name(i) != file) continue;
@@ -77,6 +81,33 @@ void coverage_json(tools::JsonWriter& json, const CoverageReport& report) {
 
 }  // namespace
 
+TestRun run_of_mistakes(const base::Diagnostics& diagnostics, const base::SourceMap& sources) {
+  TestRun run;
+  run.ran = false;
+  for (const base::Diagnostic& mistake : diagnostics.all()) {
+    if (mistake.severity != base::Severity::kError) continue;
+    const base::SourceLocation at = sources.locate(mistake.span.begin);
+    TestResult result;
+    result.verdict = Verdict::kError;
+    result.file = std::string(at.file);
+    result.line = at.line;
+    result.test = {place(result.file, at.line) + " compiles", result.file, at.line, {}};
+    result.trap = diagnostic_row(mistake.code).code;
+    result.text = mistake.text;
+    run.results.push_back(std::move(result));
+  }
+  return run;
+}
+
+TestRun run_of_mistake(const base::Error& error) {
+  TestResult result;
+  result.verdict = Verdict::kError;
+  result.test.name = "tests are run";
+  result.trap = base::refusal_code(error.refusal);
+  result.text = error.text;
+  return {{std::move(result)}, {}, nullptr, false};
+}
+
 TestTally tally(const std::vector<TestResult>& results) {
   TestTally out;
   for (const TestResult& result : results) {
@@ -96,7 +127,7 @@ std::string test_text(const TestResult& result, const base::SourceMap& sources, 
   if (colour) out += kPlain;
   out += "  " + result.test.name + "  (" + place(result.test.file, result.test.line) + ")\n";
   if (passed) return out;
-  out += "       " + place(result.file, result.line) + ": " + result.text + "\n";
+  out += "       " + cause(result) + "\n";
   const std::string line = trimmed_line(sources, result.file, result.line);
   if (!line.empty()) out += "       | " + line + "\n";
   return out;
@@ -144,23 +175,22 @@ std::string junit_text(const std::string& suite, const TestRun& run) {
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
                     ">\n  <testsuite name=\"" + markup_text(suite) + "\"" + counts + ">\n";
   if (run.seed) {
-    out += "    <properties>\n      <property name=\"seed\" value=\"" +
-           std::to_string(*run.seed) + "\"/>\n    </properties>\n";
+    out += "    <properties>\n      <property name=\"seed\" value=\"" + std::to_string(*run.seed) +
+           "\"/>\n    </properties>\n";
   }
   for (const TestResult& result : results) {
     const std::string file = markup_text(result.test.file);
     out += "    <testcase name=\"" + markup_text(result.test.name) + "\" classname=\"" + file +
-           "\" file=\"" + file + "\" line=\"" + std::to_string(result.test.line) +
-           "\" time=\"" + seconds_text(result.seconds) + "\"";
+           "\" file=\"" + file + "\" line=\"" + std::to_string(result.test.line) + "\" time=\"" +
+           seconds_text(result.seconds) + "\"";
     if (result.verdict == Verdict::kPassed) {
       out += "/>\n";
       continue;
     }
     const char* element = result.verdict == Verdict::kFailed ? "failure" : "error";
     out += std::string(">\n      <") + element + " type=\"" + markup_text(result.trap) +
-           "\" message=\"" + markup_text(result.text) + "\">" +
-           markup_text(place(result.file, result.line) + ": " + result.text) + "</" + element +
-           ">\n    </testcase>\n";
+           "\" message=\"" + markup_text(result.text) + "\">" + markup_text(cause(result)) + "</" +
+           element + ">\n    </testcase>\n";
   }
   return out + "  </testsuite>\n</testsuites>\n";
 }

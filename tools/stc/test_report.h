@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
+#include "base/result.h"
 #include "base/source.h"
 #include "tools/stc/coverage_report.h"
 #include "tools/stc/test_run.h"
@@ -16,7 +18,12 @@ struct TestRun {
   std::vector<TestResult> results;  // in the order in which they ran
   std::optional<uint64_t> seed;     // of that order, where it was drawn
   const CoverageReport* coverage = nullptr;
+  bool ran = true;  // else the results are mistakes, for which nothing was run
 };
+
+// Each mistake is a test with an error, so that nobody takes that for a pass.
+TestRun run_of_mistakes(const base::Diagnostics& diagnostics, const base::SourceMap& sources);
+TestRun run_of_mistake(const base::Error& error);
 
 struct TestTally {
   uint32_t passed = 0;
