@@ -1,5 +1,6 @@
 // Places to variables, and the instructions that read and write them.
 #include <algorithm>
+#include <utility>
 
 #include "base/check.h"
 #include "ir/program/eval_machine.h"
@@ -281,12 +282,18 @@ void EvalMachine::run_memory(Frame& frame, const Inst& inst) {
   if (place.base == PlaceBase::kArg && inst.op != Op::kLoad) {
     next_callee(frame, place.pou);
   }
-  // The order in which two handles are resolved shows only in which of two traps comes first.
+  // Which of two traps comes first: indices are checked in front of a copy, and handles are
+  // resolved by it, that of the source first.
   Address from;
+  std::optional<EvalTrap> unresolved;
   if (inst.op == Op::kCopy) {
+    const Place& source = frame.pou->places[inst.place2.index];
     from = locate(frame, inst, inst.place2);
+    const bool late = trap_ && trap_->kind == TrapKind::kReference;
+    if (late && source.base == PlaceBase::kTarget) unresolved = std::exchange(trap_, {});
   }
   const Address to = trap_ ? Address() : locate(frame, inst, inst.place);
+  if (unresolved && (!trap_ || trap_->kind == TrapKind::kReference)) trap_ = std::move(unresolved);
   if (trap_) {
     return;
   }
