@@ -287,16 +287,14 @@ void EvalMachine::run_memory(Frame& frame, const Inst& inst) {
   Address from;
   std::optional<EvalTrap> unresolved;
   if (inst.op == Op::kCopy) {
-    const Place& source = frame.pou->places[inst.place2.index];
     from = locate(frame, inst, inst.place2);
+    const bool handle = frame.pou->places[inst.place2.index].base == PlaceBase::kTarget;
     const bool late = trap_ && trap_->kind == TrapKind::kReference;
-    if (late && source.base == PlaceBase::kTarget) unresolved = std::exchange(trap_, {});
+    if (late && handle) unresolved = std::exchange(trap_, {});
   }
   const Address to = trap_ ? Address() : locate(frame, inst, inst.place);
   if (unresolved && (!trap_ || trap_->kind == TrapKind::kReference)) trap_ = std::move(unresolved);
-  if (trap_) {
-    return;
-  }
+  if (trap_) return;
   switch (inst.op) {
     case Op::kLoad:
       frame.values[inst.result.index].bits = load_bits(to);
