@@ -175,10 +175,12 @@ class PouMerger {
   // `Pump.__RESET`, which only the target needs: for instances that are made anew at each call. It
   // gives initial values, and calls FB_Init, of the block, of its bases and of what is in them.
   void check_made(const std::string& made) {
+    constexpr std::string_view kReset = ".__RESET";
+    if (!made.ends_with(kReset)) return;
     const ir::TypeTable& types = input_.target.types;
+    const std::string owner = made.substr(0, made.size() - kReset.size());
     std::vector<ir::TypeId> open;
-    const std::string owner = made.substr(0, std::min(made.rfind(".__"), made.size()));
-    for (uint32_t i = ir::kElementaryCount; i < types.size() && owner.size() < made.size(); ++i) {
+    for (uint32_t i = ir::kElementaryCount; i < types.size(); ++i) {
       if (ir::same_name(types[ir::TypeId(i)].name, owner)) open.push_back(ir::TypeId(i));
     }
     std::unordered_set<uint32_t> seen;

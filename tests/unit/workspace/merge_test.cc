@@ -317,7 +317,9 @@ TEST(Merge, E10_RefusesWhatOnlyTheTargetMakesOfWhatIsEdited) {
   plant.own =
       "FUNCTION Twice : ANY_NUM VAR_INPUT n : ANY_NUM; END_VAR Twice := n + n; END_FUNCTION\n"
       "FUNCTION_BLOCK D VAR k : INT := 5; END_VAR k := k; END_FUNCTION_BLOCK\n"
-      "FUNCTION_BLOCK E EXTENDS D END_FUNCTION_BLOCK\n";
+      "FUNCTION_BLOCK E EXTENDS D END_FUNCTION_BLOCK\n"
+      "FUNCTION_BLOCK I VAR x : INT; END_VAR METHOD FB_Init : BOOL VAR_INPUT bInitRetains, "
+      "bInCopyCode : BOOL; END_VAR x := 1; END_METHOD x := 2; END_FUNCTION_BLOCK\n";
   plant.variables += " m : INT; l : LREAL;";
   plant.main += " m := Twice(m);";
   const auto edited = [&](const char* from, const char* to) {
@@ -341,6 +343,10 @@ TEST(Merge, E10_RefusesWhatOnlyTheTargetMakesOfWhatIsEdited) {
     expect_refused(merged(plant, five, own), "is made anew at each call here");
   }
   EXPECT_TRUE(merged(plant, body, plant).ok());
+  own = plant;
+  own.own += "FUNCTION_BLOCK Own VAR i : I; END_VAR i(); END_FUNCTION_BLOCK\n";
+  own.variables += " own : Own;";
+  EXPECT_TRUE(merged(plant, edited("x := 2;", "x := 3;"), own).ok()) << "it starts once, by a call";
 }
 
 TEST(Merge, E10_RefusesATypeThatIsAnotherOneThere) {
