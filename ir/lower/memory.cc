@@ -109,9 +109,13 @@ void Selector::copy_value(const Location& to, TypeId to_type, const Location& fr
     const Operand source = string_of(from, from_type);
     return emit(kind == Kind::kString ? Opcode::SCOPY : Opcode::WCOPY, dest, source);
   }
+  copy_whole(to, to_type, from);
+}
+
+void Selector::copy_whole(const Location& to, TypeId type, const Location& from) {
   const Operand dest = address_of(to);
   const Operand source = address_of(from);
-  emit(Opcode::COPY, dest, source, {}, tables_.region({to_type, 0}));
+  emit(Opcode::COPY, dest, source, {}, tables_.region({type, 0}));
 }
 
 void Selector::select_copy(const Inst& inst) {
@@ -145,6 +149,16 @@ uint64_t Selector::default_bits(TypeId id) const {
   }
 }
 
+// Invalid constant: that of the type.
+Location Selector::initial_value(TypeId type, ConstId constant) {
+  Location initial;
+  initial.base = Base::kConst;
+  initial.constant = constant;
+  initial.constant_type = type;
+  initial.place.result = {type, 0};
+  return initial;
+}
+
 void Selector::select_init(const Inst& inst) {
   const Place& place = pou_.places[inst.place.index];
   flush_writes(inst, place);
@@ -155,11 +169,11 @@ void Selector::select_init(const Inst& inst) {
         inst.constant.valid() ? program_.constants[inst.constant].bits : default_bits(place.type);
     return store_operand(at, cls, Operand::constant(tables_.scalar(cls, bits)));
   }
-  Location initial;
-  initial.base = Base::kConst;
-  initial.constant = inst.constant;
-  initial.constant_type = place.type;
-  initial.place.result = {place.type, 0};
+  const Location initial = initial_value(place.type, inst.constant);
+  // A pointer sees what is behind the end of a text, so nothing of an earlier call is left there.
+  if (place.base == PlaceBase::kLocal && values_.local_escapes(place.base_index)) {
+    return copy_whole(at, place.type, initial);
+  }
   copy_value(at, place.type, initial, place.type);
 }
 

@@ -50,6 +50,30 @@ void Selector::add_named_slots() {
   }
 }
 
+// A pointer sees what is behind the end of a text that the caller wrote: zeros, as of a local.
+void Selector::clean_given_texts() {
+  for (uint32_t i = 0; i < pou_.locals.size(); ++i) {
+    const Local& local = pou_.locals[i];
+    const bool given = local.kind == LocalKind::kInput && values_.local_escapes(i);
+    const Kind kind = types()[local.type].kind;
+    if (!given || (kind != Kind::kString && kind != Kind::kWstring)) continue;
+    Location to;
+    to.place.root = PlaceRoot::kSlot;
+    to.place.slot = i;
+    to.place.result = {local.type, 0};
+    Location clean = to;
+    clean.place.slot = static_cast<uint32_t>(object_.slots.size());
+    Slot slot = object_.slots[i];
+    slot.kind = SlotKind::kLocal;
+    slot.local = LocalKind::kTemp;
+    slot.name.clear();
+    object_.slots.push_back(std::move(slot));
+    copy_whole(clean, local.type, initial_value(local.type, ConstId()));
+    copy_value(clean, local.type, to, local.type);
+    copy_whole(to, local.type, clean);
+  }
+}
+
 base::Result<Machine> Selector::run() {
   add_named_slots();
   machine_.blocks.reserve(flow_.blocks.size());
@@ -74,6 +98,7 @@ void Selector::select_block(uint32_t position) {
   const Block& source = pou_.blocks[flow_block.source.index];
   block().insts.reserve(source.insts.size());
   for (ValueId param : source.params) register_for(param);
+  if (position == 0) clean_given_texts();
   for (size_t i = 0; i + 1 < source.insts.size(); ++i) {
     line_ = source.insts[i].line;
     select_inst(source.insts[i]);

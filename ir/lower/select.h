@@ -71,6 +71,7 @@ class Selector {
 
   // select.cc
   void add_named_slots();
+  void clean_given_texts();
   void select_block(uint32_t position);
   void select_inst(const Inst& inst);
   void select_value(const Inst& inst);
@@ -177,6 +178,8 @@ class Selector {
   void string_into(const Location& at, TypeId type, Operand dest);
   void copy_value(const Location& to, TypeId to_type, const Location& from, TypeId from_type);
   uint64_t default_bits(TypeId type) const;
+  Location initial_value(TypeId type, ConstId constant);
+  void copy_whole(const Location& to, TypeId type, const Location& from);
 
   // call.cc
   void select_call(const Inst& inst);

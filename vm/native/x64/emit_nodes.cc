@@ -129,13 +129,15 @@ void Emitter::shift(const Node& n, const Step& step) {
   const bool rotates = n.op == Op::kRol || n.op == Op::kRor;
   const uint8_t to = integer_register(step.result);
   a_.move(to, integer_register(step.in[0]));
+  // The machine takes the count modulo its width; here everything is shifted out.
   if (step.in[1].kind == Place::kConstant) {
+    const uint64_t count = step.in[1].bits & 0xffffffffu;
+    if (!rotates && count >= 8u * n.width) return a_.move_imm(to, 0);
     const uint8_t width = rotates ? n.width : at_least_four(n.width);
-    return a_.shift(op, to, static_cast<uint8_t>(step.in[1].bits), width);
+    return a_.shift(op, to, static_cast<uint8_t>(count % (8u * n.width)), width);
   }
   a_.shift_cl(op, to, at_least_four(n.width));
   if (rotates) return;
-  // The machine takes the count modulo its width; here everything is shifted out.
   a_.alu_imm(Alu::kCmp, Operand::of(kRcx), 8 * n.width, 4);
   a_.alu(static_cast<Alu>(3), kScratch, Operand::of(kScratch), 8);  // sbb: all ones if below
   a_.alu(Alu::kAnd, to, Operand::of(kScratch), 8);
