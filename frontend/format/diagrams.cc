@@ -1,5 +1,7 @@
 #include "frontend/format/diagrams.h"
 
+#include <algorithm>
+
 #include "frontend/fbd/read.h"
 #include "frontend/format/same_program.h"
 #include "frontend/format/writer.h"
@@ -69,6 +71,25 @@ std::string laid_out_fbd(std::string_view rows, const FormatOptions& options) {
   return align(laid_out, options, text);
 }
 
+// What the first row has in front of it goes from every line: those inside of a comment too, which
+// get the new margin like all others.
+std::string without_margin(std::string_view lines) {
+  const size_t row = lines.find_first_not_of(" \t\r\n");
+  const size_t newline = row == std::string_view::npos ? row : lines.rfind('\n', row);
+  if (newline == std::string_view::npos) return std::string(lines);
+  const std::string_view margin = lines.substr(newline + 1, row - newline - 1);
+  std::string out;
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    const auto [end, same] = std::mismatch(line.begin(), line.end(), margin.begin(), margin.end());
+    out.append(end, line.end());
+    if (line.size() == lines.size()) break;
+    out += '\n';
+    lines.remove_prefix(line.size() + 1);
+  }
+  return out;
+}
+
 std::string with_margin(std::string_view lines, const std::string& margin) {
   std::string out;
   while (!lines.empty()) {
@@ -104,7 +125,7 @@ std::optional<std::string> drawn(TokenKind head, std::string_view text, uint32_t
     inner.width = options.width > indent ? options.width - indent : 1;
     uint32_t tabs = options.tabs && options.indent != 0 ? indent / options.indent : 0;
     std::string margin = std::string(tabs, '\t') + std::string(indent - tabs * options.indent, ' ');
-    out = with_margin(laid_out_fbd(text, inner), margin);
+    out = with_margin(laid_out_fbd(without_margin(text), inner), margin);
     bool whole = network::is_one_diagram(network::Language::kFbd, out);
     if (!whole || !same_diagram(head, text, out)) return std::nullopt;
   }
