@@ -43,6 +43,27 @@ std::string_view other_name(std::string_view function, std::string_view name) {
   return {};
 }
 
+std::string parameter_at(std::string_view function, uint32_t position) {
+  const auto rows = function_rows();
+  const auto row = std::ranges::find_if(
+      rows, [&](const FunctionRow& each) { return base::same_name(each.name, function); });
+  if (row == rows.end()) {
+    const bool converts = base::fold_name(function).find("to_") != std::string::npos;
+    return converts && position == 0 ? "IN" : "";
+  }
+  std::string_view words = row->parameters;
+  for (uint32_t at = 0; !words.empty(); ++at) {
+    const std::string_view word = words.substr(0, words.find(' '));
+    words.remove_prefix(std::min(words.size(), word.size() + 1));
+    if (word.back() == '+') {  // "IN1+": IN1, IN2, ...
+      const auto first = static_cast<uint32_t>(word[word.size() - 2] - '0');
+      return std::string(word.substr(0, word.size() - 2)) + std::to_string(first + position - at);
+    }
+    if (at == position) return std::string(word);
+  }
+  return {};
+}
+
 bool is_vendor_library(std::string_view name) {
 #define VENDOR(name, meaning) name,
   static constexpr std::string_view kNames[] = {

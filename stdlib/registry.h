@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "stdlib/sources.h"
@@ -75,6 +76,10 @@ struct AliasRow {
   std::string_view parameter;
 };
 std::span<const AliasRow> alias_rows();
+
+// "IN2": the parameter of a function at that position, from 0. Empty: no such function or
+// parameter.
+std::string parameter_at(std::string_view function, uint32_t position);
 
 // What CODESYS and TwinCAT call a parameter of a function: LEN(STR := s). Empty: no such name.
 std::string_view other_name(std::string_view function, std::string_view name);

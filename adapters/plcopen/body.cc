@@ -59,6 +59,7 @@ std::string language_text(Node body, Node owner, const std::string& name, Report
       language = kind;
       if (kind == "ST" || kind == "IL") {
         std::string text = xml::text_of(node);
+        if (xml::child(node, "xhtml")) report.out().kept.declares_xhtml = true;
         if (!text.empty()) out += text + "\n";
       } else if (kind == "SFC") {
         out += chart_text(node, owner, report);

@@ -69,7 +69,9 @@ void Drawing::connect(const Pending& pending) {
   const bool wire = element.kind == Kind::kContact || element.kind == Kind::kCoil ||
                     element.kind == Kind::kRightRail;
   if (links.size() > 1 && !wire && !ladder_) {
-    const std::string& pin = element.inputs[pending.input].name;
+    const std::string_view own = xml::attribute(pending.point, "formalParameter");
+    const std::string pin(own.empty() ? xml::attribute(pending.point.parent(), "formalParameter")
+                                      : own);
     fail(Code::kTwoDrivers, pending.point,
          "several connections lead to " +
              (pin.empty() ? std::string("one input") : "the input `" + pin + "`"),

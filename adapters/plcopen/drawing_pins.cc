@@ -1,6 +1,7 @@
 // Pins of blocks -> inputs and outputs of elements of the model, not linked yet.
 #include "adapters/plcopen/drawing.h"
 #include "base/name_case.h"
+#include "stdlib/registry.h"
 
 namespace plcopen {
 
@@ -18,6 +19,23 @@ bool is_operator(Node block) {
     }
   }
   return false;
+}
+
+// The names of a standard function's inputs say no more than their positions when all of them are
+// connected, in order.
+void leave_out_usual_names(Node node, Element& block) {
+  uint32_t position = 0;
+  for (const network::Input& input : block.inputs) {
+    if (base::same_name(input.name, "EN")) continue;
+    const std::string usual = stdlib::parameter_at(block.type.text, position++);
+    if (usual.empty() || !base::same_name(input.name, usual)) return;
+  }
+  for (Node pin : xml::children(xml::child(node, "inputVariables"), "variable")) {
+    if (xml::children(xml::child(pin, "connectionPointIn")).empty()) return;
+  }
+  for (network::Input& input : block.inputs) {
+    if (!base::same_name(input.name, "EN")) input.name.clear();
+  }
 }
 
 }  // namespace
@@ -39,6 +57,7 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
       }
     }
   }
+  if (all_.elements[block].operand.empty()) leave_out_usual_names(node, all_.elements[block]);
   for (Node pin : xml::children(xml::child(node, "outputVariables"), "variable")) {
     all_.elements[block].outputs.push_back(
         {std::string(xml::attribute(pin, "formalParameter")), negated(pin)});

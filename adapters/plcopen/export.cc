@@ -5,6 +5,7 @@
 #include <ctime>
 #include <sstream>
 
+#include "adapters/plcopen/geometry.h"
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
@@ -199,12 +200,29 @@ void put_relative_position(Node action) {
   position.append_attribute("y") = 0;
 }
 
+// A paragraph of a drawing that is written as it was read. Editors know it by its prefix, and CDATA
+// directly behind that.
+void put_paragraph(Node node) {
+  if (std::any_of(node.begin(), node.end(),
+                  [](Node child) { return child.type() == pugi::node_element; })) {
+    return;
+  }
+  const std::string text = xml::text_of(node);
+  node.set_name("xhtml:p");
+  node.remove_attribute("xmlns");
+  while (node.first_child()) node.remove_child(node.first_child());
+  Writer::put_characters(node, text);
+}
+
 // What the schema of TC6 demands and means nothing, also in drawings that are written as they were
 // read: what vendors add stands behind everything else of its element but documentation; no list of
 // pins is missing, nor the place of an action.
 void follow_schema(Node node) {
   const std::string_view name = node.name();
   if (name == "block") put_pin_lists(node);
+  if (name == "p" && std::string_view(node.attribute("xmlns").value()) == kXhtml) {
+    put_paragraph(node);
+  }
   if (name == "action" && std::string_view(node.parent().name()) == "actionBlock") {
     put_relative_position(node);
   }
@@ -252,11 +270,15 @@ std::optional<std::string> export_document(const ExportInput& input,
   declaration.append_attribute("encoding") = "utf-8";
   Node project = document.append_child("project");
   project.append_attribute("xmlns") = name_space(input.form);
+  if (input.form != Edition::kIec10) {
+    project.append_attribute("xmlns:xhtml") = kXhtml;
+  }
   put_headers(project, input.name);
   const uint32_t before = diagnostics.error_count();
   Writer writer(input, diagnostics);
   writer.project(project);
   follow_schema(project);
+  if (input.form != Edition::kIec10) put_geometry(project);
   pugi::xml_document other;
   if (input.form == Edition::kIec10) {
     for (const auto& [owner, texts] : to_iec10(project, other)) {

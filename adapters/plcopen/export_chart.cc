@@ -175,7 +175,7 @@ class ChartWriter {
     const std::string text = writer_.condition_of(transition, list);
     Node inside = node.append_child("condition").append_child("inline");
     inside.append_attribute("name") = std::string(transition.name.text).c_str();
-    Writer::put_text(inside, list ? "IL" : "ST", text);
+    writer_.put_text(inside, list ? "IL" : "ST", text);
   }
 
   // What lies between a transition and the steps below.

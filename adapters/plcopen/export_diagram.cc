@@ -6,10 +6,10 @@
 
 #include "adapters/plcopen/for_others.h"
 #include "adapters/plcopen/iec10.h"
+#include "adapters/plcopen/layout.h"
 #include "adapters/plcopen/plcopen.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
-#include "frontend/network/order.h"
 #include "frontend/network/same.h"
 
 namespace plcopen {
@@ -39,17 +39,13 @@ class DiagramWriter {
       }
     }
     if (next_id_ > kMaxId) placed_ = false;
+    ordered_ = by_order_ || !is_order_of_places();
     for (const network::Network& each : body_.networks) put(each);
     return said_;
   }
 
  private:
   static constexpr uint64_t kMaxId = 1'000'000'000'000;
-
-  struct Place {
-    int32_t x = 0;
-    int32_t y = 0;
-  };
 
   void fail(base::SourceSpan at, const char* text) {
     said_ = false;
@@ -58,10 +54,11 @@ class DiagramWriter {
   void put(const network::Network& network);
   void put_head(const network::Network& network, int32_t y);
   std::vector<Place> places(const network::Network& network);
-  static bool in_order(const network::Network& network, const std::vector<Place>& at);
+  bool is_order_of_places();
   void put_element(const network::Network& network, uint32_t number, Place place);
   void put_block(const network::Network& network, const Element& element, Node node);
-  void put_pin(const network::Network& network, Node list, const network::Input& input);
+  void put_pin(const network::Network& network, Node list, const network::Input& input,
+               const std::string& name);
   void put_links(const network::Network& network, Node owner, const network::Input& input);
   uint64_t inverted(const network::Network& network, const network::Input& input, Place place);
   void put_connection(const network::Network& network, Node point, Link link);
@@ -75,6 +72,7 @@ class DiagramWriter {
   Node parent_;
   bool by_order_;  // IEC 61131-10 has networks, and no order within one but that of places
   bool placed_ = false;
+  bool ordered_ = true;  // elements say their order
   bool said_ = true;
   std::set<uint64_t> used_;  // ids
   uint64_t next_id_ = 0;
@@ -92,74 +90,36 @@ Node DiagramWriter::node(const char* name, Place place, uint64_t id) {
   return out;
 }
 
-// Columns by the longest way from an input, rows one below the other.
-std::vector<DiagramWriter::Place> DiagramWriter::places(const network::Network& network) {
-  const size_t count = network.elements.size();
-  std::vector<Place> out(count);
+// Those of the drawing that was imported, or laid out.
+std::vector<Place> DiagramWriter::places(const network::Network& network) {
+  std::vector<Place> out;
   if (placed_) {
-    for (size_t i = 0; i < count; ++i) {
-      out[i] = {network.elements[i].position.x, network.elements[i].position.y};
+    for (const Element& element : network.elements) {
+      out.push_back({element.position.x, element.position.y});
     }
     return out;
   }
-  std::vector<int32_t> column(count, 0);
-  std::vector<int32_t> free;  // by column
-  int32_t bottom = y_;
-  for (size_t i = 0; i < count; ++i) {
-    int32_t y = std::numeric_limits<int32_t>::max();  // the highest of what feeds it
-    for (const network::Input& input : network.elements[i].inputs) {
-      for (Link link : input.from) {
-        if (link.element >= i) continue;
-        column[i] = std::max(column[i], column[link.element] + 1);
-        y = std::min(y, out[link.element].y);
-      }
-    }
-    if (y == std::numeric_limits<int32_t>::max()) y = y_;
-    const size_t at = static_cast<size_t>(column[i]);
-    if (free.size() <= at) free.resize(at + 1, y_);
-    y = by_order_ ? y_ + 50 * static_cast<int32_t>(i) : std::max(y, free[at]);
-    out[i] = {20 + 150 * column[i], y};
-    const int32_t pins = static_cast<int32_t>(
-        std::max(network.elements[i].inputs.size(), network.elements[i].outputs.size()));
-    free[at] = y + 40 + 20 * pins;
-    bottom = std::max(bottom, free[at]);
-  }
-  y_ = bottom + 40;
-  if (by_order_ && !in_order(network, out)) {
+  Layout layout = lay_out(network, y_, by_order_);
+  y_ = layout.bottom + 40;
+  if (by_order_ && !in_order(network, layout.at, false)) {
     fail(network.span,
          "the order of execution of this network follows from nothing that IEC 61131-10 has an "
          "element for");
   }
-  return out;
+  return std::move(layout.at);
 }
 
-namespace {
-
-bool acts(Kind kind) {
-  return kind == Kind::kCoil || kind == Kind::kSink || kind == Kind::kBlock ||
-         kind == Kind::kJump || kind == Kind::kReturn;
-}
-
-}  // namespace
-
-// Is the order of places the order of `network`?
-bool DiagramWriter::in_order(const network::Network& network, const std::vector<Place>& at) {
-  network::Network probe = network;
-  for (size_t i = 0; i < at.size(); ++i) {
-    probe.elements[i].position = {at[i].x, at[i].y, 0, 0, true};
-    probe.elements[i].order = 0;
-    probe.elements[i].id = i;
-  }
-  uint64_t last = 0;
-  for (network::Part& part : network::split(probe, {})) {
-    if (!network::order(part.network, {}).empty()) return false;
-    for (const Element& element : part.network.elements) {
-      if (!acts(element.kind)) continue;
-      if (element.id < last) return false;
-      last = element.id;
-    }
-  }
-  return true;
+// Do ladders without an order of their own mean this one? Editors go by places then. Where some
+// elements say an order, those of Beremiz and OpenPLC run them in front of all coils, which say
+// none.
+bool DiagramWriter::is_order_of_places() {
+  if (body_.language != network::Language::kLadder) return false;
+  const int32_t begin = y_;
+  const bool same = std::ranges::all_of(body_.networks, [&](const network::Network& each) {
+    return in_order(each, places(each), true);
+  });
+  y_ = begin;
+  return same;
 }
 
 void DiagramWriter::put_head(const network::Network& network, int32_t y) {
@@ -167,9 +127,7 @@ void DiagramWriter::put_head(const network::Network& network, int32_t y) {
     Node out = node("comment", {20, y}, new_id());
     out.append_attribute("height") = 20;
     out.append_attribute("width") = 200;
-    Node text = out.append_child("content").append_child("xhtml");
-    text.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
-    text.append_child(pugi::node_pcdata).set_value(comment.c_str());
+    writer_.put_formatted(out.append_child("content"), comment);
   }
   if (!network.label.empty()) {
     node("label", {20, y}, new_id()).append_attribute("label") = network.label.text.c_str();
@@ -230,9 +188,9 @@ uint64_t DiagramWriter::inverted(const network::Network& network, const network:
   const uint64_t id = new_id();
   Node block = node("block", {place.x - 10, place.y}, id);
   block.append_attribute("typeName") = "NOT";
-  block.append_attribute("executionOrderId") = ++order_;
+  if (ordered_) block.append_attribute("executionOrderId") = ++order_;
   Node pin = block.append_child("inputVariables").append_child("variable");
-  pin.append_attribute("formalParameter") = "";
+  pin.append_attribute("formalParameter") = "IN";
   put_links(network, pin, input);
   Node out = block.append_child("outputVariables").append_child("variable");
   out.append_attribute("formalParameter") = "OUT";
@@ -279,10 +237,10 @@ void put_operand(Node node, const char* name, const std::string& text) {
 
 }  // namespace
 
-void DiagramWriter::put_pin(const network::Network& network, Node list,
-                            const network::Input& input) {
+void DiagramWriter::put_pin(const network::Network& network, Node list, const network::Input& input,
+                            const std::string& name) {
   Node pin = list.append_child("variable");
-  pin.append_attribute("formalParameter") = input.name.c_str();
+  pin.append_attribute("formalParameter") = name.c_str();
   put_modifier(pin, input.modifier);
   put_links(network, pin, input);
 }
@@ -294,16 +252,25 @@ void DiagramWriter::put_block(const network::Network& network, const Element& el
   }
   Node inputs = out.append_child("inputVariables");
   Node in_outs = out.append_child("inOutVariables");
+  uint32_t position = 0;  // without EN
   for (const network::Input& input : element.inputs) {
-    const bool both = writer_.is_in_out(element.type.text, input.name);
-    put_pin(network, both ? in_outs : inputs, input);
+    const bool enable = base::same_name(input.name, "EN");
+    const std::string name =
+        input.name.empty() ? writer_.input_name(element.type.text, position) : input.name;
+    position += enable ? 0 : 1;
+    const bool both = writer_.is_in_out(element.type.text, name);
+    put_pin(network, both ? in_outs : inputs, input, name);
   }
+  // Editors look for ENO in front.
   Node outputs = out.append_child("outputVariables");
-  for (uint32_t i = 0; i < element.outputs.size(); ++i) {
-    Node pin = outputs.append_child("variable");
-    pin.append_attribute("formalParameter") = output_name(element, i).c_str();
-    if (element.outputs[i].negated) pin.append_attribute("negated") = "true";
-    pin.append_child("connectionPointOut");
+  for (const bool enable : {true, false}) {
+    for (uint32_t i = 0; i < element.outputs.size(); ++i) {
+      if (base::same_name(element.outputs[i].name, "ENO") != enable) continue;
+      Node pin = outputs.append_child("variable");
+      pin.append_attribute("formalParameter") = output_name(element, i).c_str();
+      if (element.outputs[i].negated) pin.append_attribute("negated") = "true";
+      pin.append_child("connectionPointOut");
+    }
   }
   if (element.wire.empty()) return;
   Node data = out.append_child("addData").append_child("data");
@@ -337,7 +304,9 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
     out.append_attribute("height") = element.position.height;
   }
   const bool reads = element.kind == Kind::kContact;  // others read contacts when a coil needs them
-  if (acts(element.kind) || reads) out.append_attribute("executionOrderId") = ++order_;
+  if (ordered_ && (acts(element.kind) || reads)) {
+    out.append_attribute("executionOrderId") = ++order_;
+  }
   if (!inline_negation) put_modifier(out, modifier);
   if (element.kind == Kind::kJump) out.append_attribute("label") = element.operand.text.c_str();
   if (element.kind == Kind::kBlock) {
@@ -359,7 +328,7 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
   } else if (element.kind == Kind::kSource || element.kind == Kind::kSink) {
     put_operand(out, "expression", element.operand.text);
   }
-  Writer::put_documentation(out, element.comment);
+  writer_.put_documentation(out, element.comment);
 }
 
 void Writer::diagram(Node body, const network::Body& drawn, const std::string& path) {

@@ -2,6 +2,7 @@
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
 #include "frontend/network/same.h"
+#include "stdlib/registry.h"
 
 namespace plcopen {
 
@@ -84,6 +85,24 @@ bool Writer::is_in_out(const std::string& type, const std::string& pin) const {
     }
   }
   return false;
+}
+
+std::string Writer::input_name(const std::string& function, uint32_t position) const {
+  for (const Pou& pou : tree_.pous) {
+    if (!base::same_name(pou.name.text, function)) continue;
+    uint32_t at = 0;
+    for (const frontend::VarBlock& block : pou.blocks) {
+      const bool given = block.section == frontend::VarSection::kInput ||
+                         block.section == frontend::VarSection::kInOut;
+      if (!given) continue;
+      for (const frontend::VarDecl& decl : block.vars) {
+        for (const frontend::Name& name : decl.names) {
+          if (at++ == position) return std::string(name.text);
+        }
+      }
+    }
+  }
+  return stdlib::parameter_at(function, position);
 }
 
 void Writer::put_kept(Node owner, const std::string& path) {

@@ -170,7 +170,7 @@ std::string Writer::condition_of(const frontend::ChartTransition& transition, bo
   return {};
 }
 
-void Writer::put_text(Node parent, const char* language, const std::string& text) {
+void Writer::put_text(Node parent, const char* language, const std::string& text) const {
   // Lines keep their distances from each other.
   std::string_view all = text;
   while (!all.empty() && xml::trimmed(all.substr(0, all.find('\n'))).empty() &&
@@ -192,16 +192,29 @@ void Writer::put_text(Node parent, const char* language, const std::string& text
     if (line.ends_with("\r")) line.remove_suffix(1);
     out += std::string(line.substr(std::min(least, line.size()))) + (rest.empty() ? "" : "\n");
   }
-  Node xhtml = parent.append_child(language).append_child("xhtml");
-  xhtml.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
-  if (!out.empty()) xhtml.append_child(pugi::node_pcdata).set_value(out.c_str());
+  put_formatted(parent.append_child(language), out.empty() ? " " : out);  // no text is none to them
 }
 
-void Writer::put_documentation(Node owner, const std::string& text) {
-  if (text.empty()) return;
-  Node xhtml = owner.append_child("documentation").append_child("xhtml");
-  xhtml.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
-  xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
+// Beremiz and OpenPLC Editor look for a <p> in <xhtml:p>, of which no blank is lost as it is CDATA;
+// CODESYS and TwinCAT write what they declare themselves, and get that.
+void Writer::put_formatted(Node owner, const std::string& text) const {
+  if (in_.form == Edition::kIec10 || (in_.kept != nullptr && in_.kept->declares_xhtml)) {
+    Node xhtml = owner.append_child("xhtml");
+    xhtml.append_attribute("xmlns") = kXhtml;
+    if (!text.empty()) xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
+    return;
+  }
+  put_characters(owner.append_child("xhtml:p"), text);
+}
+
+void Writer::put_characters(Node paragraph, const std::string& text) {
+  paragraph.append_child(pugi::node_pcdata);  // so that no line begins in front of the text
+  paragraph.append_child(pugi::node_cdata).set_value(text.c_str());
+  paragraph.append_child(pugi::node_pcdata);
+}
+
+void Writer::put_documentation(Node owner, const std::string& text) const {
+  if (!text.empty()) put_formatted(owner.append_child("documentation"), text);
 }
 
 Node Writer::data(Node owner, const char* name) {
@@ -218,7 +231,7 @@ void Writer::put_declaration(Node owner, const std::string& text) {
   Node xhtml = data(owner, "interfaceasplaintext")
                    .append_child("InterfaceAsPlainText")
                    .append_child("xhtml");
-  xhtml.append_attribute("xmlns") = "http://www.w3.org/1999/xhtml";
+  xhtml.append_attribute("xmlns") = kXhtml;
   xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
 }
 

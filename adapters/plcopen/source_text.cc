@@ -110,19 +110,19 @@ struct UnitForm {
   TokenKind end;
 };
 constexpr UnitForm kUnitForms[] = {{TokenKind::kProgram, TokenKind::kEndProgram},
-                           {TokenKind::kFunction, TokenKind::kEndFunction},
-                           {TokenKind::kFunctionBlock, TokenKind::kEndFunctionBlock},
-                           {TokenKind::kType, TokenKind::kEndType},
-                           {TokenKind::kVarGlobal, TokenKind::kEndVar},
-                           {TokenKind::kVarConfig, TokenKind::kEndVar},
-                           {TokenKind::kConfiguration, TokenKind::kEndConfiguration},
-                           {TokenKind::kClass, TokenKind::kEndClass},
-                           {TokenKind::kInterface, TokenKind::kEndInterface},
-                           {TokenKind::kNamespace, TokenKind::kEndNamespace},
-                           {TokenKind::kMockFunction, TokenKind::kEndMockFunction},
-                           {TokenKind::kSetup, TokenKind::kEndSetup},
-                           {TokenKind::kTeardown, TokenKind::kEndTeardown},
-                           {TokenKind::kTest, TokenKind::kEndTest}};
+                                   {TokenKind::kFunction, TokenKind::kEndFunction},
+                                   {TokenKind::kFunctionBlock, TokenKind::kEndFunctionBlock},
+                                   {TokenKind::kType, TokenKind::kEndType},
+                                   {TokenKind::kVarGlobal, TokenKind::kEndVar},
+                                   {TokenKind::kVarConfig, TokenKind::kEndVar},
+                                   {TokenKind::kConfiguration, TokenKind::kEndConfiguration},
+                                   {TokenKind::kClass, TokenKind::kEndClass},
+                                   {TokenKind::kInterface, TokenKind::kEndInterface},
+                                   {TokenKind::kNamespace, TokenKind::kEndNamespace},
+                                   {TokenKind::kMockFunction, TokenKind::kEndMockFunction},
+                                   {TokenKind::kSetup, TokenKind::kEndSetup},
+                                   {TokenKind::kTeardown, TokenKind::kEndTeardown},
+                                   {TokenKind::kTest, TokenKind::kEndTest}};
 
 const UnitForm* form_at(const Token& token) {
   for (const UnitForm& form : kUnitForms) {
@@ -233,7 +233,7 @@ void SourceParts::put(Node project) const {
     for (const Part& part : source.parts) {
       Node node = own.append_child("part");
       if (part.number != 0) node.append_attribute("number") = part.number;
-      node.append_child(pugi::node_cdata).set_value(part.text.c_str());
+      node.append_child(pugi::node_pcdata).set_value(part.text.c_str());
     }
   }
 }

@@ -11,6 +11,8 @@ namespace plcopen {
 
 using xml::Node;
 
+inline constexpr const char* kXhtml = "http://www.w3.org/1999/xhtml";
+
 class Writer {
  public:
   Writer(const ExportInput& input, base::Diagnostics& diagnostics)
@@ -19,6 +21,7 @@ class Writer {
   }
 
   void project(Node project);
+  static void put_characters(Node paragraph, const std::string& text);  // as CDATA, and nothing else
   // The text of the sources; null: none goes into the document.
   SourceParts* parts() { return parts_ ? &*parts_ : nullptr; }
 
@@ -54,8 +57,9 @@ class Writer {
   Pieces pieces(base::SourceSpan span, base::SourcePos head_end) const;
   base::SourcePos head_end(const Pou& pou) const;
   std::string condition_of(const frontend::ChartTransition& transition, bool& list) const;
-  static void put_text(Node parent, const char* language, const std::string& text);
-  static void put_documentation(Node owner, const std::string& text);
+  void put_text(Node parent, const char* language, const std::string& text) const;
+  void put_formatted(Node owner, const std::string& text) const;
+  void put_documentation(Node owner, const std::string& text) const;
   static void put_declaration(Node owner, const std::string& text);
   static Node data(Node owner, const char* name);
   std::string attribute_text(frontend::Range32 attributes) const;
@@ -93,6 +97,8 @@ class Writer {
   // --- export_diagram.cc
   void diagram(Node body, const frontend::network::Body& drawn, const std::string& path);
   bool is_in_out(const std::string& type, const std::string& pin) const;
+  // What the input of a function at that position is called.
+  std::string input_name(const std::string& function, uint32_t position) const;
 
   // --- export.cc
   void configuration(Node parent, const frontend::ConfigDecl& config,

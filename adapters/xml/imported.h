@@ -53,6 +53,7 @@ struct Kept {
   std::map<std::string, KeptChart> charts;               // by POU
   std::map<std::string, KeptDrawing> drawings;           // by POU or POU.Member
   std::map<std::string, std::vector<std::string>> data;  // <data> of nobody, by POU
+  bool declares_xhtml = false;  // texts stand in <xhtml xmlns=...>, as CODESYS writes them
 };
 
 // Names that are taken, in any case of letters.

@@ -130,7 +130,7 @@ expect 0 stc export vendor.xml -o vendor.new.xml --without-sources
 expect 0 stc export vendor.new.xml -o vendor.third.xml --without-sources --name vendor
 [ "$(grep -c 'vendor.example/xml/contact' vendor.third.xml)" -eq 1 ] || fail "data of a vendor in a contact"
 # A chart is written as it was drawn: ids, places, divergences, actions in steps, transitions of their own, names, data of vendors.
-for part in '<step localId="5" name="Fill left">' '<simultaneousDivergence localId="4" height="1" width="100">' '<transition name="Both">' '<relPosition x="0" y="0" />' '<p xmlns="http://www.w3.org/1999/xhtml"><!.CDATA.left := 0;'; do
+for part in '<step localId="5" name="Fill left" ' '<simultaneousDivergence localId="4" height="1" width="100">' '<transition name="Both">' '<relPosition x="0" y="0" />' '<xhtml:p><!.CDATA.left := 0;'; do
   grep -q "$part" chart.new.xml || fail "a chart lost $part"
 done
 grep -A1 '<step localId="5"' chart.new.xml | grep -q '<position x="50" y="200" />' || fail "places of a chart are lost"

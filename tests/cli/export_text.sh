@@ -206,7 +206,7 @@ grep -q '<data name="http://vendor.example/xml/trend"' objects.xml || fail "addD
 # A coil of a branch stands in its row.
 printf 'PROGRAM P\nVAR a, b, x, y : BOOL; END_VAR\nLADDER\n  |--[ a ]--+--------------( x )--|\n  |         +--[ b ]-------( y )--|\nEND_LADDER\nEND_PROGRAM\n' >fork.st
 expect 0 stc export fork.st -o fork.xml
-[ "$(grep -A1 '<contact\|<coil' fork.xml | grep -o 'y="[0-9]*"' | tr '\n' ' ')" = 'y="20" y="20" y="80" y="80" ' ] || fail "rows of a fork"
+[ "$(grep -A1 '<contact\|<coil' fork.xml | grep -o 'y="[0-9]*"' | tr '\n' ' ')" = 'y="43" y="43" y="111" y="111" ' ] || fail "rows of a fork"
 # Charts, of which nothing is known in 61131-10: other tools get an error, not an empty body.
 expect 0 stc export "$samples/chart.xml" -o chart10.xml --as 61131-10
 said 'W0074.*`Batch`: charts have no known elements'

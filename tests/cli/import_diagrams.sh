@@ -33,7 +33,7 @@ LADDER
   Quiet:
   |--[ n > 1 ]------------------------------------(/ Lamp )--|
 
-  |--[ n := ADD(IN1:=n, IN2:=1) ]----------------------------|
+  |--[ n := ADD(n, 1) ]--------------------------------------|
 END_LADDER
 T
 sed -n '/^LADDER/,/^END_LADDER/p' made/Line.st | cmp - wanted || fail "the ladder is drawn differently"

@@ -60,7 +60,7 @@ run iec10 3 M.a=18 M.sum=9 M.loop=9 M.pump.speed=2.5 L.out=TRUE L.edges.n=1
 said '^7 source\(s\), 0 error\(s\), 0 warning\(s\)'
 grep -q '^NAMESPACE Tools$' made/Twice.st || fail namespace
 grep -q 'go : BOOL R_EDGE;' made/Counter.st || fail "order or edge of parameters"
-sed -n '/^FBD/,/^END_FBD/p' made/Main.st | grep -n 'IN2 := loop' | grep -q '^3:' || fail "order of networks"
+sed -n '/^FBD/,/^END_FBD/p' made/Main.st | grep -n 'ADD(3, loop)' | grep -q '^3:' || fail "order of networks"
 grep -q '^  Top:$' made/Rungs.st || fail label
 # ten BODY: a program of 61131-10.
 ten() { printf '<Project xmlns="www.iec.ch/public/TC65SC65BWG7TF10" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"><Types><GlobalNamespace><Program name="P"><Vars><Variable name="a"><Type>%s</Type></Variable></Vars><MainBody>%s</MainBody></Program></GlobalNamespace></Types></Project>' "${2:-<TypeName>INT</TypeName>}" "$1" >ten.xml; }
