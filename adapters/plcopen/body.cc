@@ -1,7 +1,10 @@
 // Bodies and conditions by language.
+#include <algorithm>
+
 #include "adapters/plcopen/drawing.h"
 #include "adapters/plcopen/reader.h"
 #include "base/name_case.h"
+#include "frontend/lex/characters.h"
 
 namespace plcopen {
 namespace {
@@ -25,6 +28,47 @@ Node body_in_data(Node add) {
     if (is_vendor(data, "cfc") || xml::child(data, "CFC")) return data;
   }
   return {};
+}
+
+// The first word of a pragma, in small letters.
+std::string pragma_word(std::string_view pragma) {
+  std::string word;
+  for (char c : xml::trimmed(pragma)) {
+    if (!frontend::is_name_part(c)) break;
+    word += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+  }
+  return word;
+}
+
+// Beremiz and OpenPLC take a pragma that is no such word for C, and run it.
+bool is_code(std::string_view pragma) {
+  static constexpr std::string_view kWords[] = {
+      "attribute", "if",   "elsif",  "else",    "end_if",      "define", "undefine", "region",
+      "endregion", "info", "text",   "warning", "error",       "flow",   "analysis", "implicit",
+      "library",   "nobp", "noflow", "bp",      "messageguid", "stop",   "ignore"};
+  const bool statement = pragma.find(';') != std::string_view::npos;
+  return statement && std::ranges::find(kWords, pragma_word(pragma)) == std::end(kWords);
+}
+
+void report_code(std::string_view text, Node node, Reporter& report) {
+  for (size_t at = 0; at < text.size(); ++at) {
+    const std::string_view rest = text.substr(at);
+    const char first = text[at];
+    const bool comment = rest.starts_with("(*");
+    if (!comment && !rest.starts_with("//") && first != '\'' && first != '"' && first != '{') {
+      continue;
+    }
+    const std::string_view close = comment ? "*)" : first == '/' ? "\n" : first == '{' ? "}" : "";
+    const size_t end = text.find(close.empty() ? std::string_view(&first, 1) : close, at + 1);
+    if (end == std::string_view::npos) return;
+    const std::string_view inside = text.substr(at + 1, end - at - 1);
+    if (first == '{' && is_code(inside)) {
+      report.add(Code::kXmlNotUnderstood, node,
+                 "a pragma has code in another language, which does not run here: {" +
+                     std::string(inside.substr(0, 40)) + (inside.size() > 40 ? "...}" : "}"));
+    }
+    at = end + close.size() - (close.empty() ? 0 : 1);
+  }
 }
 
 }  // namespace
@@ -60,6 +104,7 @@ std::string language_text(Node body, Node owner, const std::string& name, Report
       if (kind == "ST" || kind == "IL") {
         std::string text = xml::text_of(node);
         if (xml::child(node, "xhtml")) report.out().kept.declares_xhtml = true;
+        report_code(text, node, report);
         if (!text.empty()) out += text + "\n";
       } else if (kind == "SFC") {
         out += chart_text(node, owner, report);

@@ -1,5 +1,6 @@
 // Configurations, resources, tasks and instances; the project as a whole.
 #include <algorithm>
+#include <initializer_list>
 
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
@@ -259,6 +260,29 @@ void import_namespaces(Node owner, Reporter& report) {
   }
 }
 
+// What stands where no part of TC6 does would be lost without a word.
+void report_misplaced(Node owner, std::initializer_list<const char*> parts, Reporter& report) {
+  for (Node child : xml::children(owner)) {
+    const bool known =
+        std::ranges::any_of(parts, [&](const char* part) { return xml::is(child, part); });
+    if (known || xml::is(child, "addData") || xml::is(child, "documentation")) continue;
+    report.add(Code::kXmlNotUnderstood, child,
+               xml::shown(child) + " does not belong into " + xml::shown(owner) +
+                   ", and nothing of it comes in");
+  }
+}
+
+void report_misplaced(Node project, Reporter& report) {
+  report_misplaced(project, {"fileHeader", "contentHeader", "types", "instances"}, report);
+  const Node types = xml::child(project, "types");
+  report_misplaced(types, {"dataTypes", "pous"}, report);
+  report_misplaced(xml::child(types, "dataTypes"), {"dataType"}, report);
+  report_misplaced(xml::child(types, "pous"), {"pou"}, report);
+  const Node instances = xml::child(project, "instances");
+  report_misplaced(instances, {"configurations"}, report);
+  report_misplaced(xml::child(instances, "configurations"), {"configuration"}, report);
+}
+
 void import_project(Node project, Reporter& report) {
   if (xml::is(project, "pou")) return import_pou(project, report);
   import_types(project, report);
@@ -289,6 +313,7 @@ void import(const xml::Document& document, xml::Imported& out) {
     import_project(converted.project.document_element(), report);
   } else {
     import_project(document.root(), report);
+    if (xml::is(document.root(), "project")) report_misplaced(document.root(), report);
   }
   report.set_taker(nullptr);
   texts.finish(report);

@@ -32,7 +32,8 @@ class Drawing {
   bool failed() const { return failed_; }
 
  private:
-  enum class What : uint8_t { kElement, kConnector, kContinuation, kInOut };
+  // kOpen: nothing stands there, so what it leads to stays open.
+  enum class What : uint8_t { kElement, kConnector, kContinuation, kInOut, kOpen };
   struct Passed {  // an in-out parameter of a block, to be read after it
     std::string name;
     Node point;
@@ -76,6 +77,7 @@ class Drawing {
   network::Modifier edge_of(Node node);
   network::Modifier modifier_of(Node node, bool stores);
   network::Modifier storage_of(Node node);
+  bool is_open(Node node);  // a variable whose place an editor has left empty; it is recorded then
   std::string operand(Node node, const char* child);
   std::string expression(Node node);
   uint32_t push(network::Element element);

@@ -204,7 +204,16 @@ void Drawing::add_contact(Node node, Kind kind) {
   wait_for(number, 0, node, true);
 }
 
+bool Drawing::is_open(Node node) {
+  const Node place = xml::child(node, "expression");
+  const std::string text(xml::trimmed(xml::text_of(place)));
+  if (!place || !(text.empty() || text == "???")) return false;
+  record(node, What::kOpen, kNone);
+  return true;
+}
+
 void Drawing::add_read(Node node, Kind kind) {
+  if (is_open(node)) return;
   Element element = made(node, kind);
   element.operand.text = operand(node, "expression");
   element.outputs.resize(1);
@@ -220,6 +229,7 @@ void Drawing::add_read(Node node, Kind kind) {
 }
 
 void Drawing::add_written(Node node, Kind kind) {
+  if (is_open(node)) return;
   Element element = made(node, kind);
   element.operand.text = operand(node, "expression");
   element.inputs.resize(1);

@@ -1,5 +1,6 @@
 // Connections of a drawing -> links; elements -> networks in the order of execution.
 #include <algorithm>
+#include <set>
 
 #include "adapters/plcopen/drawing.h"
 #include "base/limits.h"
@@ -155,6 +156,7 @@ void Drawing::append_link(Node connection, std::vector<Link>& out, Modifier* edg
                     "`, which is no element of this body");
   }
   Raw& raw = raws_[found->second];
+  if (raw.what == What::kOpen) return;
   if (raw.what == What::kContinuation) {
     const std::string name(xml::attribute(raw.node, "name"));
     auto connector = connectors_.find(base::fold_name(name));
@@ -291,6 +293,27 @@ std::string Drawing::loop_text(const network::Network& part,
   return out;
 }
 
+namespace {
+
+// A variable that is read and written in one place is read after it, unless what it reads goes
+// through the place itself: then it keeps its value until the next scan. Gives a loop that is left.
+std::vector<uint32_t> ordered(network::Network& network,
+                              std::vector<network::Precedence> precedences) {
+  constexpr int kMostLoops = 100;  // each costs as much as the network is large
+  std::vector<uint32_t> loop = network::order(network, precedences);
+  for (int i = 0; i < kMostLoops && !loop.empty(); ++i) {
+    const std::set<uint32_t> in_loop(loop.begin(), loop.end());
+    const size_t gone = std::erase_if(precedences, [&](const network::Precedence& each) {
+      return in_loop.count(each.first) != 0 && in_loop.count(each.second) != 0;
+    });
+    if (gone == 0) break;
+    loop = network::order(network, precedences);
+  }
+  return loop;
+}
+
+}  // namespace
+
 network::Body Drawing::body() {
   network::Body out;
   out.language = ladder_ ? network::Language::kLadder : network::Language::kFbd;
@@ -301,7 +324,7 @@ network::Body Drawing::body() {
     network::Network& part = parts[i].network;
     Node node = node_of(parts[i]);
     report_.set_network(static_cast<uint32_t>(i + 1));
-    std::vector<uint32_t> loop = network::order(part, parts[i].precedences);
+    std::vector<uint32_t> loop = ordered(part, parts[i].precedences);
     if (!loop.empty()) {
       fail(Code::kLoopWithoutVariable, node,
            "the value of " + loop_text(part, loop) + " goes in a circle, and nothing keeps it",

@@ -21,7 +21,8 @@ class Writer {
   }
 
   void project(Node project);
-  static void put_characters(Node paragraph, const std::string& text);  // as CDATA, and nothing else
+  static void put_characters(Node paragraph,
+                             const std::string& text);  // as CDATA, and nothing else
   // The text of the sources; null: none goes into the document.
   SourceParts* parts() { return parts_ ? &*parts_ : nullptr; }
 

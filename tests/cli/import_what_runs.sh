@@ -179,3 +179,25 @@ expect 0 stc import rail.xml -o rail
 said 'the ladder became FBD: power arrives at several pins of `t`'
 runs rail 1 P.b=TRUE
 runs rail 2 P.b=FALSE
+
+# --- a variable that is read and written in one place, in a circle through itself, keeps its value
+fbd="<block localId=\"1\" typeName=\"ADD\">$(place 200 20)<inputVariables><variable formalParameter=\"IN1\">$(from 2)</variable><variable formalParameter=\"IN2\">$(from 3)</variable></inputVariables><inOutVariables/><outputVariables><variable formalParameter=\"OUT\"><connectionPointOut/></variable></outputVariables></block>
+<inOutVariable localId=\"2\">$(place 100 20)$(from 1)<connectionPointOut/><expression>n</expression></inOutVariable>
+<inVariable localId=\"3\">$(place 100 60)<connectionPointOut/><expression>1</expression></inVariable>"
+project tc6_0201 "$(pou P program "$counter" "<body><FBD>$fbd</FBD></body>")" "$none" >circle.xml
+runs circle.xml 3 P.n=3
+
+# --- places of variables that the editor has left empty: the pins stay open
+open="<inVariable localId=\"7\">$(place 10 90)<connectionPointOut/><expression/></inVariable><outVariable localId=\"8\">$(place 300 20)$(from 9)<expression>???</expression></outVariable>
+<block localId=\"9\" typeName=\"TON\" instanceName=\"t\">$(place 200 90)<inputVariables><variable formalParameter=\"IN\">$(from 7)</variable><variable formalParameter=\"PT\">$(from 7)</variable></inputVariables><inOutVariables/><outputVariables><variable formalParameter=\"Q\"><connectionPointOut/></variable></outputVariables></block>"
+timer="<localVars>$(variable n INT)<variable name=\"t\"><type><derived name=\"TON\"/></type></variable></localVars>"
+project tc6_0201 "$(pou P program "$timer" "<body><FBD>$fbd$open</FBD></body>")" "$none" >open.xml
+runs open.xml 3 P.n=3 P.t.Q=FALSE
+
+# --- what stands in the wrong place, and code of another language, are named
+project tc6_0201 "$(pou P program "$counter" "$(st "n := n + 1; { a = 'no{';} {attribute 'x;y'} // {no;}")")" "<pous>$(pou Q program '' "$(st ';')")</pous>$none" >lost.xml
+runs lost.xml 3 P.n=3
+expect 0 stc import lost.xml -o lost
+said "W0070.*a pragma has code in another language, which does not run here: \{ a = 'no\{';\}"
+said 'W0070.*<pous> does not belong into <project>, and nothing of it comes in'
+[ "$(grep -c W0070 out)" -eq 2 ] || fail "others, too"
