@@ -95,6 +95,9 @@ class Drawing {
   void add_pins(Node node, uint32_t block, Raw& raw);
   void add_storage(Node pin, uint32_t block);
 
+  // --- drawing_comparisons.cc
+  void compare_as_contacts();
+
   // --- drawing_links.cc
   void connect(const Pending& pending);
   void store();

@@ -201,3 +201,29 @@ expect 0 stc import lost.xml -o lost
 said "W0070.*a pragma has code in another language, which does not run here: \{ a = 'no\{';\}"
 said 'W0070.*<pous> does not belong into <project>, and nothing of it comes in'
 [ "$(grep -c W0070 out)" -eq 2 ] || fail "others, too"
+
+# --- a comparison in front of contacts and coils is one of them, and the ladder stays one
+compared() {  # compared ID IN1 IN2: a box that compares, with its variables at ID + 1 and ID + 2
+  printf '<block localId="%s" typeName="GT">%s<inputVariables><variable formalParameter="IN1">%s</variable><variable formalParameter="IN2">%s</variable></inputVariables><inOutVariables/><outputVariables><variable formalParameter="OUT"><connectionPointOut/></variable></outputVariables></block>' "$1" "$(place 100 "$1")" "$(from $(($1 + 1)))" "$(from $(($1 + 2)))"
+  printf '<inVariable localId="%s">%s<connectionPointOut/><expression>%s</expression></inVariable>' $(($1 + 1)) "$(place 10 "$1")" "$2" $(($1 + 2)) "$(place 10 $(($1 + 1)))" "$3"
+}
+mark() { printf '<%s localId="%s">%s%s<connectionPointOut/><variable>%s</variable></%s>' "$1" "$2" "$(place "$3" "$4")" "$(from "$5")" "$6" "$1"; }
+ladder="$(compared 20 n 1)$(mark contact 30 200 20 20 a)$(mark coil 31 300 20 30 q)
+$(compared 60 'n + 1' 3)$(mark coil 70 200 60 60 r)$(compared 90 n 2)<outVariable localId=\"100\">$(place 300 90)$(from 90)<expression>w</expression></outVariable>"
+bools="<localVars>$(variable n INT)$(variable q BOOL)$(variable r BOOL)$(variable w BOOL)<variable name=\"a\"><type><BOOL/></type><initialValue><simpleValue value=\"TRUE\"/></initialValue></variable></localVars>"
+rungs() { project tc6_0201 "$(pou P program "$bools" "<body><LD>$1</LD></body>" "<actions><action name=\"Up\">$(st 'n := n + 1;')</action></actions>")" "$none"; }
+rungs "$ladder" >boxes.xml
+rungs "${ladder%%$(compared 90 n 2)*}" >power.xml
+expect 0 stc import power.xml -o power
+grep -qE '^ *\|--\[ n > 1 \]--\[ a \]-+\( q \)--\|$' power/P.st || fail "a comparison: $(cat power/P.st)"
+grep -qE '^ *\|--\[ GT\(n \+ 1, 3\) \]-+\( r \)--\|$' power/P.st || fail "an expression: $(cat power/P.st)"
+[ "$(grep -c W00 out)" -eq 0 ] || fail "more is said"
+expect 0 stc import boxes.xml -o boxes
+grep -q 'W0075' out || fail "a variable behind a comparison has no rung"
+for n in 0:FALSE:FALSE 1:FALSE:FALSE 2:TRUE:FALSE 3:TRUE:TRUE; do
+  rest=${n#*:}
+  for input in power.xml power boxes.xml; do
+    expect 0 stvm run "$input" --scans 1 --virtual-time --set "P.n=${n%%:*}" --print P.q,P.r
+    grep -qxF "P.q=${rest%:*}" out && grep -qxF "P.r=${rest#*:}" out || fail "$input $n"
+  done
+done
