@@ -2,6 +2,7 @@
 #include "frontend/questions/indexer.h"
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/objects/objects.h"
+#include "ir/types/address_text.h"
 
 namespace frontend::questions {
 
@@ -24,12 +25,27 @@ void Indexer::visit(const Expr& expr, ExprId id, bool written) {
       }
       return;
     }
+    case ExprKind::kDirect:
+      add(expr.span, address(expr), role);
+      return;
     case ExprKind::kCall:
       call_arguments(expr);
       return;
     default:
       return;
   }
+}
+
+// %IX0.0; one with levels, or of another resource, is no place that can be asked for.
+std::optional<Symbol> Indexer::address(const Expr& expr) {
+  const ir::DirectAddress at = tree_.directs[expr.number].address;
+  if (at.area == ir::DirectArea::kNone || expr.operand.valid()) return std::nullopt;
+  Symbol symbol;
+  symbol.kind = SymbolKind::kAddress;
+  symbol.name = ir::address_text(at);
+  symbol.type = type_of_direct(sema_.program.types, at);
+  symbol.address = at;
+  return symbol;
 }
 
 std::optional<Symbol> Indexer::declaration_named(std::string_view name) {

@@ -5,8 +5,9 @@
 
 #include <map>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <unordered_map>
-#include <utility>
 
 #include "frontend/questions/symbols.h"
 #include "frontend/questions/walk.h"
@@ -35,6 +36,7 @@ class Indexer : private Walker {
 
   // --- code (index_code.cc)
   void visit(const Expr& expr, ExprId id, bool written) override;
+  std::optional<Symbol> address(const Expr& expr);
   std::optional<Symbol> plain_name(const Expr& expr, const Note& note);
   std::optional<Symbol> member(const Expr& expr, const Note& note);
   std::optional<Symbol> in_block(uint32_t block, const Name& name);
@@ -45,6 +47,7 @@ class Indexer : private Walker {
   const Note& known(ExprId id) { return sema_.facts.of(scope_, id); }
 
   // --- symbols (symbols.cc)
+  ir::DirectAddress address_of(const Variable& variable) const;
   std::optional<Symbol> variable_symbol(VarId id) const;
   Symbol pou_symbol(const PouInfo& info) const;
   const Name* member_named(ir::TypeId type, std::string_view name) const;
@@ -58,7 +61,8 @@ class Indexer : private Walker {
   Sema& sema_;
   PouScope scope_;  // of what is walked
   Index out_;
-  std::map<std::pair<uint32_t, const void*>, uint32_t> numbers_;  // by place, or by built-in row
+  // By place, or by built-in row, or by address.
+  std::map<std::tuple<uint32_t, const void*, std::string>, uint32_t> numbers_;
   std::unordered_map<ir::TypeId, SpecId> specs_;           // of structures, unions and enumerations
   std::unordered_map<ir::TypeId, NameMap<Name>> members_;  // likewise: fields and enumerators
   std::unordered_map<uint32_t, VarId> variables_;          // by the place of their name

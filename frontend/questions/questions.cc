@@ -130,6 +130,18 @@ const Symbol* Questions::symbol_named(std::string_view name) {
   return nullptr;
 }
 
+std::vector<const Symbol*> Questions::symbols_at(const ir::DirectAddress& address) {
+  std::vector<const Symbol*> out;
+  const uint64_t end = uint64_t{address.bit_offset} + address.bit_size;
+  for (const Symbol& symbol : index().symbols) {
+    const uint64_t begin = symbol.address.bit_offset;
+    const bool shares = symbol.address.area == address.area && begin < end &&
+                        address.bit_offset < begin + symbol.address.bit_size;
+    if (shares) out.push_back(&symbol);
+  }
+  return out;
+}
+
 std::vector<Occurrence> Questions::uses_of(const Symbol& symbol) {
   const Index& all = index();
   const auto number = static_cast<size_t>(&symbol - all.symbols.data());
@@ -196,6 +208,10 @@ Signature Questions::signature_of(const Symbol& symbol) {
         std::string(section_word(variable.section)) + (variable.constant ? " CONSTANT " : " ");
   }
   out.text += std::string(head_word(symbol.kind)) + symbol.name;
+  if (symbol.kind == SymbolKind::kVariable && symbol.address.area != ir::DirectArea::kNone) {
+    const Variable& variable = sema_.declared.variables[symbol.variable.index];
+    out.text += " AT " + ir::address_text(variable.decl->address);
+  }
   if (symbol.pou != kNoPou) {
     describe_call(sema_.declared.pous[symbol.pou], out);
   } else if (symbol.type.valid() && symbol.kind != SymbolKind::kType) {

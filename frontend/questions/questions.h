@@ -49,6 +49,8 @@ class Questions {
   const Symbol* symbol_at(base::SourcePos pos);
   // By its qualified name, without case: `Plant.Pump.level`, `Color#Red`.
   const Symbol* symbol_named(std::string_view name);
+  // What shares a bit with an address: variables AT it, and addresses in code.
+  std::vector<const Symbol*> symbols_at(const ir::DirectAddress& address);
   // In the order of the files, the declaration too when it is in one of them.
   std::vector<Occurrence> uses_of(const Symbol& symbol);
   // Of the innermost expression there that has a type.

@@ -66,6 +66,8 @@ std::string_view word_of(SymbolKind kind) {
       return "instance";
     case SymbolKind::kStandardFunction:
       return "standardFunction";
+    case SymbolKind::kAddress:
+      return "address";
   }
   return "";
 }
@@ -84,6 +86,23 @@ std::string Indexer::qualified(const PouInfo& info) const {
   return info.owner == kNoPou ? name : qualified(sema_.declared.pous[info.owner]) + '.' + name;
 }
 
+// AT %QB0, with the size of all elements; none: it has none, or one that is given elsewhere.
+ir::DirectAddress Indexer::address_of(const Variable& variable) const {
+  const VarDecl* const decl = variable.decl;
+  const bool located = decl != nullptr && decl->has_address && !decl->incomplete &&
+                       decl->levels.count == 0 && decl->address.bit_offset != ir::kOpenAddress;
+  if (!located || !variable.type.valid()) return {};
+  ir::DirectAddress out = decl->address;
+  const ir::TypeTable& types = sema_.program.types;
+  const ir::Type& type = types[variable.type];
+  if (type.kind != ir::Kind::kArray || !types.is_scalar(type.base)) return out;
+  // The elements of an array of BOOL have a bit each behind %X.
+  uint64_t bits = out.bit_size == 1 ? 1 : 8 * ir::scalar_size(types.scalar(type.base));
+  for (const ir::Dimension& dim : type.dims) bits *= dim.count();
+  out.bit_size = static_cast<uint32_t>(std::min<uint64_t>(bits, 0xffffffff));
+  return out;
+}
+
 std::optional<Symbol> Indexer::variable_symbol(VarId id) const {
   if (!id.valid()) return std::nullopt;
   const Variable* variable = &sema_.declared.variables[id.index];
@@ -100,6 +119,7 @@ std::optional<Symbol> Indexer::variable_symbol(VarId id) const {
   symbol.type = variable->type;
   symbol.defined = variable->name.span;
   symbol.name = std::string(variable->name.text);
+  symbol.address = address_of(*variable);
   if (variable->pou != kNoPou) {
     symbol.name = qualified(sema_.declared.pous[variable->pou]) + '.' + symbol.name;
   } else if (!variable->list.empty()) {
@@ -170,7 +190,9 @@ std::optional<Symbol> Indexer::type_symbol(std::string_view name) const {
 uint32_t Indexer::number_of(const Symbol& symbol) {
   const auto next = static_cast<uint32_t>(out_.symbols.size());
   const void* row = symbol.defined.begin.valid() ? nullptr : symbol.row;
-  const auto [found, added] = numbers_.try_emplace({symbol.defined.begin.offset, row}, next);
+  const bool bare = symbol.kind == SymbolKind::kAddress;
+  const auto [found, added] =
+      numbers_.try_emplace({symbol.defined.begin.offset, row, bare ? symbol.name : ""}, next);
   if (added) {
     Symbol& own = out_.symbols.emplace_back(symbol);
     own.library = sema_.library.holds(symbol.defined);

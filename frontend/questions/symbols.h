@@ -51,6 +51,7 @@ enum class SymbolKind : uint8_t {
   kTask,
   kInstance,  // of a program, in a RESOURCE
   kStandardFunction,
+  kAddress,  // %IX0.0 in code
 };
 std::string_view word_of(SymbolKind kind);
 
@@ -63,6 +64,7 @@ struct Symbol {
   VarId variable;            // kVariable
   uint32_t pou = kNoCode;    // what has code, and kInterface
   const stdlib::FunctionRow* row = nullptr;  // kStandardFunction
+  ir::DirectAddress address;                 // kAddress, and of a variable AT %IX0.0
 };
 
 enum class Role : uint8_t { kDeclared, kRead, kWritten };

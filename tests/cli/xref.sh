@@ -56,3 +56,31 @@ for place in 4294967299:1 3:4294967297 -1:1 3x:1 3: :1 0:1 3:0 3:999999999999999
   expect 2 stc xref plant --at "plant/main.st:$place"
 done
 expect 2 stc xref plant --at plant/main.st:3:1 --name c
+
+# --- by address, as an electrician asks: variables AT it, whole arrays, and addresses in code
+cat >addresses.st <<'ST'
+VAR_GLOBAL
+  Start AT %IX0.0 : BOOL;
+  Row AT %MB10 : ARRAY[0..4] OF BYTE;
+END_VAR
+PROGRAM Line
+VAR lamp AT %QX0.1 : BOOL; END_VAR
+  lamp := Start AND %IX0.0;
+  %QB0 := Row[1];
+  Row[2] := %MB12;
+END_PROGRAM
+ST
+expect 0 stc xref addresses.st --name %IX0.0
+said '^VAR_GLOBAL Start AT %IX0\.0 : BOOL$'
+said '^%IX0\.0 : BOOL$'
+said '^addresses\.st:7:21: read$'
+expect 0 stc xref addresses.st --name %qx0.1
+said '^VAR Line\.lamp AT %QX0\.1 : BOOL$'
+said '^addresses\.st:8:3: written$'
+expect 0 stc xref addresses.st --name %MW7
+said '^VAR_GLOBAL Row AT %MB10 : ARRAY\[0\.\.4\] OF BYTE$'
+if grep -q '%MB12' out; then fail 'words that share no bit'; fi
+expect 2 stc xref addresses.st --name %MB15
+said 'nothing stands at %MB15'
+expect 0 stc xref addresses.st --name Start --format json
+said '"signature": ?"VAR_GLOBAL Start AT %IX0\.0 : BOOL"'

@@ -6,6 +6,7 @@
 #include "frontend/questions/compilation.h"
 #include "frontend/questions/questions.h"
 #include "frontend/sema/names.h"
+#include "ir/types/address_text.h"
 #include "tools/common/json.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/session.h"
@@ -22,7 +23,8 @@ using frontend::questions::Symbol;
 constexpr tools::OptionRow kXrefOptions[] = {
     TOOLS_COMPILE_OPTIONS,
     {"--at", "FILE:LINE:COLUMN", "what stands at that place"},
-    {"--name", "NAME", "what has that name: Main.level, Colour#Red (default: all names)"},
+    {"--name", "NAME",
+     "what has that name or address: Main.level, Colour#Red, %QX0.1 (default: all)"},
     tools::kFormatOption,
 };
 constexpr tools::Command kXrefCommand{
@@ -69,6 +71,11 @@ base::Result<Answer> answer_of(const tools::Options& options, Questions& questio
     }
   } else if (options.has("--name")) {
     const std::string& name = options.text("--name");
+    if (const auto address = ir::parse_address(name)) {
+      answer.symbols = questions.symbols_at(*address);
+      if (answer.symbols.empty()) return wrong("nothing stands at " + ir::address_text(*address));
+      return answer;
+    }
     if (const Symbol* symbol = questions.symbol_named(name)) answer.symbols.push_back(symbol);
     if (answer.symbols.empty()) {
       frontend::NearestName nearest(name);

@@ -197,7 +197,7 @@ complete -c stc -n '__fish_seen_subcommand_from xref' -l name -x -d 'name of the
 complete -c stc -n '__fish_seen_subcommand_from xref' -l jobs -s j -x -d 'threads at most (default: one per core); the result is the same'
 complete -c stc -n '__fish_seen_subcommand_from xref' -l warn -s W -x -d 'error: warnings are errors; CODE=LEVEL, such as W0003=off: error, warning, note or off; repeatable'
 complete -c stc -n '__fish_seen_subcommand_from xref' -l at -x -d 'what stands at that place'
-complete -c stc -n '__fish_seen_subcommand_from xref' -l name -x -d 'what has that name: Main.level, Colour#Red (default: all names)'
+complete -c stc -n '__fish_seen_subcommand_from xref' -l name -x -d 'what has that name or address: Main.level, Colour#Red, %QX0.1 (default: all)'
 complete -c stc -n '__fish_seen_subcommand_from xref' -l format -x -a 'text json' -d 'text (default) or json'
 complete -c stc -n '__fish_seen_subcommand_from xref' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stc -n '__fish_seen_subcommand_from xref' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
