@@ -13,11 +13,7 @@
 
 #include "base/ids.h"
 #include "base/source.h"
-
-namespace ir {
-struct TypeTag;
-using TypeId = base::Id<TypeTag>;
-}  // namespace ir
+#include "ir/types/types.h"
 
 namespace stdlib {
 struct FunctionRow;
