@@ -18,13 +18,15 @@ expect 7 stc export nothing.st -o x.xml
 # What is there is only overwritten when it is a document, and never a source.
 cp p.st q.st
 expect 7 stc export q.st -o ./q.st --force
-said 'is one of the sources; nothing was written'
+said 'this command reads it; nothing was written'
 cp p.xml q.xml
 expect 7 stc export q.xml -o q.xml
 cmp p.st q.st && cmp p.xml q.xml || fail "a source was overwritten"
-expect 7 stc export p.st -o q.st
+cp p.st q.txt
+expect 7 stc export p.st -o q.txt
 said 'is there and no XML; nothing was written. --force overwrites'
 expect 0 stc export p.st -o q.xml
+expect 0 stc export p.st -o q.txt --force
 expect 0 stc export p.st -o q.st --force
 printf 'PROGRAM P n := ; END_PROGRAM\n' >bad.st
 expect 1 stc export bad.st -o x.xml

@@ -14,6 +14,7 @@
 #include "tools/common/exit.h"
 #include "tools/common/help.h"
 #include "tools/common/option_rows.h"
+#include "tools/common/outputs.h"
 #include "tools/common/terminal.h"
 
 namespace tools {
@@ -149,7 +150,11 @@ static int run_tool(const Tool& tool, int argc, char** argv) {
                         [&](const Options& given) { return run_version(tool, given); });
   }
   for (const Entry* entry : tool.entries) {
-    if (verb == entry->command->name) return with_options(tool, *entry->command, args, entry->run);
+    if (verb != entry->command->name) continue;
+    return with_options(tool, *entry->command, args, [&](const Options& given) {
+      base::Status free = check_outputs(given);
+      return free.ok() ? entry->run(given) : refuse(tool.name, free.error());
+    });
   }
   return refuse(tool.name, unknown_command(tool, verb));
 }

@@ -73,7 +73,7 @@ int run_build(const tools::Options& options) {
   const bool text = *format == base::DiagnosticFormat::kText;
   if (text) report(*project, diagnostics, *format);
   base::Status written = write_images(*versions, options.text("--output", project->name + ".img"),
-                                      project->name, with_line);
+                                      *project, with_line);
   if (!text) return finish(*project, diagnostics, *format, written);
   return written.ok() ? tools::kOk : tools::refuse("stc", written.error());
 }

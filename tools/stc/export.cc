@@ -1,10 +1,10 @@
 // stc export: sources -> XML for other tools.
 #include <cstdio>
-#include <filesystem>
 
 #include "frontend/compile.h"
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
+#include "tools/common/outputs.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/session.h"
@@ -28,18 +28,12 @@ constexpr tools::Command kExportCommand{
 
 #ifdef STC_HAS_XML
 
-namespace fs = std::filesystem;
-
 // A source is never the document; what else is there has to look like one.
 base::Status refuse_to_overwrite(const tools::Options& options, const Project& project) {
   const std::string output = options.text("--output");
-  std::error_code none;
-  if (!fs::is_regular_file(output, none)) return base::Ok{};
-  for (uint32_t file = 0; file < project.sources.file_count(); ++file) {
-    if (!fs::equivalent(output, std::string(project.sources.file_name(file)), none)) continue;
-    return base::Error{base::Refusal::kFileUnwritable,
-                       output + ": is one of the sources; nothing was written"};
-  }
+  if (!tools::is_file(output)) return base::Ok{};
+  base::Status free = tools::check_output(output, project.read_files(), false);
+  if (!free.ok()) return free;
   if (options.has("--force")) return base::Ok{};
   base::Result<std::string> old = tools::read_text(output);
   if (!old.ok()) return old.error();

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "tools/common/files.h"
+#include "tools/common/outputs.h"
 
 namespace stc {
 
@@ -34,12 +35,19 @@ base::Status write_image(const std::string& path, const ir::Image& image, const 
 }
 
 base::Status write_images(const std::vector<ResourceVersion>& versions, const std::string& output,
-                          const std::string& project, bool with_line) {
+                          const Project& project, bool with_line) {
+  std::vector<std::string> paths;
   for (const ResourceVersion& made : versions) {
     const std::string resource = versions.size() > 1 ? made.resource : std::string();
-    base::Result<std::string> path = image_path(output, resource, project);
+    base::Result<std::string> path = image_path(output, resource, project.name);
     if (!path.ok()) return path.error();
-    base::Status written = write_image(*path, made.version.image, made.version.bytes, with_line);
+    base::Status free = tools::check_output(*path, project.read_files());
+    if (!free.ok()) return free;
+    paths.push_back(std::move(*path));
+  }
+  for (size_t i = 0; i < versions.size(); ++i) {
+    const Version& made = versions[i].version;
+    base::Status written = write_image(paths[i], made.image, made.bytes, with_line);
     if (!written.ok()) return written;
   }
   return base::Ok{};

@@ -17,8 +17,8 @@ base::Result<std::string> image_path(const std::string& output, const std::strin
 // With a line on stderr if wanted. Errors: kFileUnwritable.
 base::Status write_image(const std::string& path, const ir::Image& image, const base::Bytes& bytes,
                          bool with_line);
-// All of them, each at its path.
+// All of them, each at its path; none when one would take the place of what was read.
 base::Status write_images(const std::vector<ResourceVersion>& versions, const std::string& output,
-                          const std::string& project, bool with_line);
+                          const Project& project, bool with_line);
 
 }  // namespace stc

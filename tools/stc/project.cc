@@ -130,6 +130,15 @@ std::vector<std::string> Project::held_paths() const {
   return out;
 }
 
+std::vector<std::string> Project::read_files() const {
+  std::vector<std::string> out;
+  for (uint32_t file = 0; file < sources.file_count(); ++file) {
+    out.emplace_back(sources.file_name(file));
+  }
+  for (const ReadFile& other : other_files) out.push_back(other.path);
+  return out;
+}
+
 base::Result<Project> load_project(const std::vector<std::string>& paths,
                                    std::optional<frontend::Dialect> dialect) {
   Project project;

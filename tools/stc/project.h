@@ -47,6 +47,8 @@ struct Project {
 
   // What the folder of the project has to hold.
   std::vector<std::string> held_paths() const;
+  // Every file that was read: no output takes its place.
+  std::vector<std::string> read_files() const;
 };
 
 // Reads every source: files as given, folders recursively (*.st and objects of TwinCAT, sorted by

@@ -86,18 +86,12 @@ base::Result<Files> files_of(const fs::path& folder, const std::string& element)
 
 }  // namespace
 
-bool is_source_name(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".st" || extension == ".iecst" || extension == ".exp";
-}
-
 base::Result<Files> source_files(const std::string& path) {
   if (!tools::is_there(path)) {
     return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
   }
   if (!tools::is_folder(path)) return Files{path};
-  return files_below(path, is_source_name);
+  return files_below(path, [](const std::string& file) { return is_source_name(file); });
 }
 
 base::Result<Files> importable_files(const std::string& path, bool any_xml) {

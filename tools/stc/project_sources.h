@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/outputs.h"
 #include "tools/common/project_file.h"
 
 namespace stc {
 
-// Is it a source by its name?
-bool is_source_name(const std::string& path);
+using tools::is_source_name;
 // `path` itself, or the sources in that folder and below it, sorted. Errors: kFileNotFound,
 // kFileUnreadable.
 base::Result<std::vector<std::string>> source_files(const std::string& path);

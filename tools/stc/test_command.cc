@@ -6,6 +6,7 @@
 
 #include "tools/common/files.h"
 #include "tools/common/json.h"
+#include "tools/common/outputs.h"
 #include "tools/common/terminal.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/coverage_output.h"
@@ -136,6 +137,8 @@ base::Result<int> run_tests(const tools::Options& options) {
   if (!project.ok()) {
     return not_run(options, {}, run_of_mistake(project.error()), project.error());
   }
+  base::Status free = tools::check_output(options.text("--output"), project->read_files());
+  if (!free.ok()) return free.error();
   frontend::Coverage coverage;
   if (wishes->counts()) project->compile.coverage = &coverage;
   base::Diagnostics diagnostics = diagnostics_of(*project);

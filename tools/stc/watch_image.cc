@@ -1,4 +1,5 @@
 #include "tools/stc/watch_image.h"
+#include "tools/common/outputs.h"
 
 #include "tools/stc/embed.h"
 #include "tools/stc/image_output.h"
@@ -26,7 +27,7 @@ base::Result<WatchTarget::Next> WatchedImage::take(const ir::Image& image, const
 
 base::Result<WatchTarget::Next> WatchedImage::take(std::vector<ResourceVersion>& versions,
                                                    const Project& project, const Built& built) {
-  base::Status written = write_images(versions, output_of(project), project.name, with_line_);
+  base::Status written = write_images(versions, output_of(project), project, with_line_);
   if (!written.ok()) return written.error();
   if (with_line_) built.print();
   return Next::kWait;
@@ -40,6 +41,8 @@ base::Status WatchedImage::write(const ir::Image& image, const Project& project)
   base::Bytes bytes = embedding->encode(named, nullptr).bytes;
   base::Result<std::string> path = image_path(output_of(project), {}, project.name);
   if (!path.ok()) return path.error();
+  base::Status free = tools::check_output(*path, project.read_files());
+  if (!free.ok()) return free;
   const bool stands = stamp_.seconds != -1 && stamp_of(*path) == stamp_;
   if (stands && bytes == written_) return base::Ok{};
   base::Status written = write_image(*path, image, bytes, with_line_);
