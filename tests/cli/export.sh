@@ -18,7 +18,7 @@ expect 7 stc export nothing.st -o x.xml
 # What is there is only overwritten when it is a document, and never a source.
 cp p.st q.st
 expect 7 stc export q.st -o ./q.st --force
-said 'this command reads it; nothing was written'
+said 'is a source, or read by this command'
 cp p.xml q.xml
 expect 7 stc export q.xml -o q.xml
 cmp p.st q.st && cmp p.xml q.xml || fail "a source was overwritten"

@@ -19,7 +19,8 @@ cp -a pr was && cp pr.img was.img && cp run.rec was.rec
 # kept COMMAND...: refused, and everything is as before.
 kept() {
   expect 7 "$@"
-  said "R0503: .*: is a source, or this command reads it; nothing was written. Name another file"
+  said "R0503: .*: is a source, or read by this command"
+  said "or name another file"
   diff -r was pr && cmp was.img pr.img && cmp was.rec run.rec || fail "overwritten by $*"
 }
 for output in pr/main.st ./pr/../pr/f.st pr/stc.toml link hard.img; do

@@ -47,6 +47,8 @@ class Options {
   std::vector<std::string> all(std::string_view name) const;
   base::Result<uint64_t> number(std::string_view name, uint64_t otherwise) const;
   const std::vector<std::string>& arguments() const { return arguments_; }
+  // By the long names of the options.
+  const std::map<std::string, std::vector<std::string>>& values() const { return values_; }
 
  private:
   friend class OptionParser;

@@ -16,54 +16,65 @@ const char* name_of(const char* path) {
   return slash == nullptr ? path : slash + 1;
 }
 
-// A source or settings, where a link leads to.
-bool has_text_of_people(const char* path) {
-  char* const real = ::realpath(path, nullptr);
-  const bool has = real != nullptr && (is_source_name(real) || name_of(real) == kProjectFile);
-  std::free(real);
-  return has;
-}
-
-}  // namespace
-
-bool is_source_name(const std::string& path) { return is_source_name(path.c_str()); }
-
-bool is_source_name(const char* path) {
-  const char* const name = name_of(path);
+[[gnu::always_inline]] inline bool named_as_source(const char* name) {
   const char* const dot = std::strrchr(name, '.');
   return dot != nullptr && dot != name &&
          (::strcasecmp(dot, ".st") == 0 || ::strcasecmp(dot, ".iecst") == 0 ||
           ::strcasecmp(dot, ".exp") == 0);
 }
 
-base::Status check_output(const std::string& output, const std::vector<std::string>& inputs,
-                          bool any_source) {
+// A source or settings, where a link leads to.
+bool has_text_of_people(const char* path) noexcept {
+  char* const real = ::realpath(path, nullptr);
+  const bool has =
+      real != nullptr && (named_as_source(name_of(real)) || name_of(real) == kProjectFile);
+  std::free(real);
+  return has;
+}
+
+bool is_output(std::string_view option) noexcept {
+  constexpr std::string_view kOutputs = "--output --trace --plot --chart --record";
+  return kOutputs.find(option) != kOutputs.npos;
+}
+
+bool takes(const std::string& output, const std::vector<std::string>& inputs,
+           bool any_source) noexcept {
   struct stat own;
   struct stat other;
   const bool loses = ::stat(output.c_str(), &own) == 0 && S_ISREG(own.st_mode) && own.st_size > 0;
-  if (!loses) return base::Ok{};
+  if (!loses) return false;
   bool taken = any_source && has_text_of_people(output.c_str());
   for (const std::string& input : inputs) {
     taken |= ::stat(input.c_str(), &other) == 0 && other.st_dev == own.st_dev &&
              other.st_ino == own.st_ino;
   }
-  if (!taken) return base::Ok{};
-  return base::Error{base::Refusal::kFileUnwritable,
-                     output +
-                         ": is a source, or this command reads it; nothing was written. "
-                         "Name another file"};
+  return taken;
+}
+
+base::Error taken(const std::string& output) {
+  return {base::Refusal::kFileUnwritable, output + ": is a source, or read by this command"};
+}
+
+}  // namespace
+
+bool is_source_name(const std::string& path) { return named_as_source(name_of(path.c_str())); }
+
+base::Status check_output(const std::string& output, const std::vector<std::string>& inputs,
+                          bool any_source) {
+  return takes(output, inputs, any_source) ? taken(output) : base::Status(base::Ok{});
 }
 
 base::Status check_outputs(const Options& options) {
-  std::vector<std::string> inputs = options.arguments();
-  for (const char* const read : {"--first", "--base", "--key", "--values"}) {
-    inputs.push_back(options.text(read));
+  for (const auto& [name, outputs] : options.values()) {
+    if (!is_output(name)) continue;
+    // With --force a command decides itself which source it replaces.
+    bool lost = takes(outputs[0], options.arguments(), !options.has("--force"));
+    for (const auto& [other, inputs] : options.values()) {
+      lost |= &inputs != &outputs && takes(outputs[0], inputs, false);
+    }
+    if (lost) return taken(outputs[0]);
   }
-  base::Status free = base::Ok{};
-  for (const char* const name : {"--output", "--trace", "--plot", "--chart", "--record"}) {
-    if (free.ok()) free = check_output(options.text(name), inputs, !options.has("--force"));
-  }
-  return free;
+  return base::Ok{};
 }
 
 }  // namespace tools

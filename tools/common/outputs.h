@@ -21,6 +21,5 @@ base::Status check_outputs(const Options& options);
 
 // By its extension.
 bool is_source_name(const std::string& path);
-bool is_source_name(const char* path);
 
 }  // namespace tools

@@ -91,7 +91,7 @@ base::Result<Files> source_files(const std::string& path) {
     return base::Error{base::Refusal::kFileNotFound, path + ": no such file or directory"};
   }
   if (!tools::is_folder(path)) return Files{path};
-  return files_below(path, [](const std::string& file) { return is_source_name(file); });
+  return files_below(path, is_source_name);
 }
 
 base::Result<Files> importable_files(const std::string& path, bool any_xml) {
