@@ -29,6 +29,8 @@ printf '%s\n' "${COMPREPLY[@]}"
 BASH
 [ "$(bash ask.bash stc chec)" = check ] || fail "a command"
 [ "$(bash ask.bash stc check --format s)" = sarif ] || fail "a choice"
+[ "$(bash ask.bash stc check --format = s)" = sarif ] || fail "a choice after ="
+[ "$(bash ask.bash stc check --format = | tr '\n' ' ')" = "text json sarif github " ] || fail "after ="
 [ "$(bash ask.bash stvm help und)" = undo ] || fail "help of a command"
 touch a_source.st
 bash ask.bash stc check a_so | grep -q '^a_source.st$' || fail "a file"

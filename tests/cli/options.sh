@@ -166,3 +166,29 @@ PY
 done
 expect 2 stc build good.st --output --quiet
 said 'build: --output needs a value: FILE, and --quiet is an option; if it is meant, write --output=--quiet'
+# An empty value is an empty value, and what begins with `=` is no option.
+for name in "" "=5"; do
+  expect 0 stc build good.st -o named.img --name "$name"
+done
+# Names that are defined.
+for define in 1x 'A B=1' '' '=1'; do
+  expect 2 stc check good.st "--define=$define"
+  said "R0504: --define: .$define. does not begin with a name; write NAME or NAME=VALUE"
+done
+expect 2 stc check good.st --define A=1 --define a=2
+said 'R0504: --define: .A=1. and .a=2. contradict each other; leave one out'
+expect 0 stc check good.st --define A=1 --define a=1 --define B
+# Codes in letters of either case.
+for code in w0001 e3001 r0301; do
+  expect 0 stc explain $code
+  said "^$(echo $code | tr a-z A-Z): "
+done
+expect 2 stc explain W001
+said 'did you mean .W0001.'
+# A RESOURCE where none is declared.
+expect 1 stc build good.st -o named.img --resource foo
+said 'error\[E2018\]: there is no RESOURCE .foo.: nothing declares one'
+# A text of the other kind is shown as it is written.
+printf 'PROGRAM Main VAR i : INT; END_VAR i := "aä"; END_PROGRAM\n' >wide.st
+expect 1 stc check wide.st
+said 'error\[E3001\]: "aä" does not go with .INT.'

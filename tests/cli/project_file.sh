@@ -111,6 +111,12 @@ refused 2:1 'unknown key `frobnicate.x`; known are name, .* and the tables' <<'T
 [frobnicate]
 x = 1
 T
+refused 1:19 '`A=1` and `a=2` contradict each other; leave one out' <<'T'
+defines = ["A=1", "a=2"]
+T
+refused 1:12 '`1x` does not begin with a name; write NAME or NAME=VALUE' <<'T'
+defines = ["1x"]
+T
 refused 2:9 '`format.width` must be a whole number between 40 and 1000' <<'T'
 [format]
 width = 7

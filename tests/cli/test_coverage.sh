@@ -210,6 +210,8 @@ awk 'length($0) > 80 {exit 1}' out || fail 'wider than a terminal'
 cat src/logic.st some_test.st src/starter.st >both.st
 expect 0 stc test both.st --coverage one
 said 'nothing is counted: each file has a TEST'
+expect 1 stc test both.st --fail-under 0
+said 'nothing is counted: each file has a TEST'
 # Code that tests replace did not run.
 printf "TEST 'm' VAR l : Logic; END_VAR MOCK l; l(n := 1); END_TEST\n" >mock_test.st
 expect 0 stc test src/logic.st mock_test.st --coverage one

@@ -95,7 +95,7 @@ class OptionParser {
   base::Status take_next(const OptionRow& row, std::string_view given) {
     const std::string_view next = at_ + 1 < args_.size() ? args_[at_ + 1] : "";
     if (at_ + 1 == args_.size()) return usage({given, " needs a value: ", row.value});
-    if (find_row(command_, next.substr(0, next.find('='))) != nullptr) {
+    if (next.starts_with('-') && find_row(command_, next.substr(0, next.find('='))) != nullptr) {
       return usage({given, " needs a value: ", row.value, ", and ", next,
                     " is an option; if it is meant, write ", long_name(row), "=", next});
     }

@@ -73,6 +73,7 @@ base::Result<bool> put_out(const CoverageReport& report, const CoverageWishes& w
     base::Status written = write_forms(report, wishes, project);
     if (!written.ok()) return written.error();
   }
+  if (wishes.least && report.files.empty()) return false;
   if (!wishes.least || report.total.percent() >= *wishes.least) return true;
   char least[32];
   std::snprintf(least, sizeof least, "%g", *wishes.least);

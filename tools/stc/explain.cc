@@ -1,6 +1,7 @@
 // stc explain: the page of a code, or a whole table.
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdio>
 #include <cstring>
 
@@ -211,10 +212,25 @@ std::string nearest_page(const std::string& what) {
   for (uint32_t i = 0; i < ir::kTrapCount; ++i) {
     nearest.offer(ir::trap_name(static_cast<ir::TrapKind>(i)));
   }
+  for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
+    nearest.offer(base::diagnostic_row(static_cast<base::DiagnosticCode>(i)).code);
+  }
+#define REFUSAL(id, code, title, help) nearest.offer(code);
+#include "base/refusals.def"
+#undef REFUSAL
   return nearest.question();
 }
 
-std::optional<std::string> page_of(const std::string& what) {
+// Codes in letters of either case.
+std::string code_of(const std::string& what) {
+  std::string upper = what;
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  const bool known = base::refusal_from_code(upper) || base::diagnostic_code(upper);
+  return known ? upper : what;
+}
+
+std::optional<std::string> page_of(const std::string& given) {
+  const std::string what = code_of(given);
   for (const Page& page : kPages) {
     if (what == page.name) return page.text();
   }

@@ -8,6 +8,7 @@
 #include "base/visible_text.h"
 #include "tools/common/files.h"
 #include "tools/common/project_file.h"
+#include "tools/stc/defines.h"
 #include "tools/stc/device_tables.h"
 #include "tools/stc/importer.h"
 #include "tools/stc/memory_budget.h"
@@ -72,6 +73,10 @@ base::Status apply_project_file(const std::string& path, Project& project,
   if (!file.ok()) return file.error();
   apply_to_sources(*file, project);
   const bool whole = nearest == (fs::path(path) / tools::kProjectFile).string();
+  if (const auto mistake = mistake_in(project.compile.defines)) {
+    const tools::TomlPlace place = file->find("defines")->places[mistake->number];
+    return tools::toml_error(nearest, place.line, place.column, mistake->what);
+  }
   if (whole) {
     if (base::Status applied = apply_to_program(*file, project); !applied.ok()) return applied;
     if (const tools::TomlValue* const list = file->find("sources")) {

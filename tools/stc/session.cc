@@ -9,6 +9,7 @@
 #include "base/visible_text.h"
 #include "frontend/warning_pragmas.h"
 #include "tools/common/terminal.h"
+#include "tools/stc/defines.h"
 #include "tools/stc/edit_version.h"
 #include "tools/stc/run_report.h"
 #include "tools/stc/warning_settings.h"
@@ -76,6 +77,9 @@ base::Result<Project> open_project(const tools::Options& options,
   base::Result<Project> project = load_project(paths, *dialect);
   if (!project.ok()) return project;
   if (options.has("--resource")) project->compile.resource = options.text("--resource");
+  if (const auto mistake = mistake_in(options.all("--define"))) {
+    return base::Error{base::Refusal::kUsage, "--define: " + mistake->what};
+  }
   for (std::string& define : options.all("--define")) {
     project->compile.defines.push_back(std::move(define));
   }

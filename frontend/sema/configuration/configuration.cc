@@ -55,7 +55,12 @@ bool check_resource_names(const Phase& phase, const ConfigDecl& config) {
 
 // One image runs one resource: the one that was asked for, else the first.
 void Configuration::choose_resource() {
-  if (sema_.tree.configs.empty()) return;
+  if (sema_.tree.configs.empty()) {
+    if (sema_.options.resource.empty()) return;
+    return error(DiagnosticCode::kUnknownResource, {},
+                 "there is no RESOURCE `" + sema_.options.resource + "`: nothing declares one",
+                 "leave --resource out");
+  }
   const ConfigDecl& config = sema_.tree.configs[0];
   if (sema_.tree.configs.size() > 1) {
     error(DiagnosticCode::kTwoConfigurations, sema_.tree.configs[1].span,

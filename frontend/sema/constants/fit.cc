@@ -6,17 +6,32 @@
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/expressions/width.h"
 #include "frontend/sema/sema.h"
+#include "ir/types/utf.h"
 
 namespace frontend {
 namespace {
 
-std::string value_text(const Constant& value) {
+// As it is written in a source.
+std::string literal_text(const Constant& value, bool wide) {
+  if (!wide) return "'" + value.text + "'";
+  std::string out;
+  for (size_t i = 0; i + 1 < value.text.size(); i += 2) {
+    uint32_t code = static_cast<uint8_t>(value.text[i]);
+    code |= uint32_t{static_cast<uint8_t>(value.text[i + 1])} << 8;
+    out += ir::utf8(code);
+  }
+  return '"' + out + '"';
+}
+
+std::string value_text(const Constant& value, const ir::TypeTable& types) {
   if (value.form == Constant::Form::kReal) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value.real);
     return text;
   }
-  if (value.form == Constant::Form::kText) return "'" + value.text + "'";
+  if (value.form == Constant::Form::kText) {
+    return literal_text(value, value.type.valid() && types[value.type].kind == ir::Kind::kWstring);
+  }
   return wide_text(value.integer);
 }
 
@@ -33,7 +48,7 @@ std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
   Traits to = traits_of(types, target);
   auto mismatch = [&]() -> std::optional<uint64_t> {
     std::string what = value.flex == Flex::kNone ? "`" + sema_.report.type_text(value.type) + "`"
-                                                 : value_text(value);
+                                                 : value_text(value, types);
     error(DiagnosticCode::kTypeMismatch, span,
           what + " does not go with `" + sema_.report.type_text(target) + "`");
     return std::nullopt;
@@ -72,7 +87,7 @@ std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
                     !std::isfinite(static_cast<float>(real));
     if (!overflow) return real_bits(scalar, real);
     error(DiagnosticCode::kLiteralOutOfRange, span,
-          value_text(value) + " is too large for `" + sema_.report.type_text(target) + "`");
+          value_text(value, types) + " is too large for `" + sema_.report.type_text(target) + "`");
     return std::nullopt;
   }
   Wide integer = value.integer;
@@ -124,7 +139,8 @@ std::optional<std::string> Constants::fit_text(const Constant& value, ir::TypeId
               (sema_.program.types[value.type].kind == ir::Kind::kWstring) == wide;
   if (!text) {
     error(DiagnosticCode::kTypeMismatch, span,
-          value_text(value) + " does not go with `" + sema_.report.type_text(target) + "`",
+          value_text(value, sema_.program.types) + " does not go with `" +
+              sema_.report.type_text(target) + "`",
           wide ? "write WSTRING literals in double quotes"
                : "write STRING literals in single quotes");
     return std::nullopt;
