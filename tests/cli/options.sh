@@ -179,9 +179,9 @@ expect 2 stc check good.st --define A=1 --define a=2
 said 'R0504: --define: .A=1. and .a=2. contradict each other; leave one out'
 expect 0 stc check good.st --define A=1 --define a=1 --define B
 # Codes in letters of either case.
-for code in w0001 e3001 r0301; do
-  expect 0 stc explain $code
-  said "^$(echo $code | tr a-z A-Z): "
+for page in w0001 e3001 r0301; do
+  expect 0 stc explain $page
+  said "^$(echo $page | tr a-z A-Z): "
 done
 expect 2 stc explain W001
 said 'did you mean .W0001.'
