@@ -63,3 +63,31 @@ ln -sfn other link
 rm real/slot_a
 wait_for slot_a ls real
 [ -z "$(ls other)" ] || fail "written into another folder: $(ls other)"
+
+# Another state folder takes the place of the one that runs: nothing is written there, status says
+# so, and when the right one is back, all is well.
+sums() { cat "$1"/control_* "$1"/slot_* "$1"/retain_* "$1"/journal "$1"/traps | cksum; }
+sed 's/n + 1/n + 2/' p.st >q.st
+serve beside q.st
+expect 0 stvm stop --dir beside
+serve own p.st
+before=$(sums beside)
+mv own own.old
+mv beside own
+wait_for 'another folder is there now' stvm status --dir own.old
+sleep 3
+[ "$(sums own)" = "$before" ] || fail 'something was written into the folder of another controller'
+mv own beside
+mv own.old own
+settled() { stvm status --dir own | grep -q 'another folder' && return 1; echo settled; }
+wait_for settled settled
+expect 0 stvm stop --dir own
+serve own
+expect 0 stvm stop --dir own
+
+# A lock that is a link makes no file elsewhere.
+rm beside/lock
+ln -s ../made-by-lock beside/lock
+expect 7 stvm serve --dir beside
+said 'lock: it is a link; remove it'
+[ ! -e made-by-lock ] || fail 'the target of the link was made'

@@ -88,7 +88,7 @@ base::Status serve_broker(const tools::Options& options, ConnectBroker connect) 
   const std::string directory = state_directory(options);
   base::Result<StateFolder> folder = StateFolder::open(own_folder(directory), true);
   if (!folder.ok()) return folder.error();
-  vm::FileStorage storage(folder->path());
+  vm::FileStorage storage(folder->path(), folder->descriptor());
   online_change::Store store(storage);
   base::Result<std::unique_ptr<Trust>> trust = make_trust(trust_path, store);
   if (!trust.ok()) return trust.error();

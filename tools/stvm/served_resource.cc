@@ -35,7 +35,7 @@ ServedResource::ServedResource(const std::string& directory, const std::string& 
     : directory_(directory),
       name_(name),
       folder_(std::move(folder)),
-      storage_(folder_.path()),
+      storage_(folder_.path(), folder_.descriptor()),
       store_(storage_),
       events_(std::make_shared<EventLog>(store_, name, output)) {}
 

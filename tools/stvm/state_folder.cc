@@ -76,7 +76,10 @@ base::Result<StateFolder> StateFolder::open(const std::string& path, bool create
   const std::string file = real + "/lock";
   // The folder itself, whose lock nobody can remove, and the file that older versions lock.
   vm::Descriptor folder(::open(real.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  vm::Descriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  if (!folder.valid()) return unwritable(real, std::strerror(errno));
+  constexpr int kSafely = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;  // a link could lead elsewhere
+  vm::Descriptor lock(::openat(folder.get(), "lock", O_RDWR | O_CREAT | kSafely, 0600));
+  if (!lock.valid() && errno == ELOOP) return unwritable(file, "it is a link; remove it");
   // The file system is read-only: the program can run from it all the same.
   const bool read_only = !lock.valid() && errno == EROFS;
   if (!lock.valid() && !read_only) return unwritable(file, std::strerror(errno));

@@ -19,7 +19,8 @@ class StateFolder {
 
   // Without links: those could be made to lead elsewhere after they were looked at.
   const std::string& path() const { return path_; }
-  bool is_new() const { return is_new_; }  // open() has made it
+  int descriptor() const { return locks_[1].get(); }  // of the directory that is locked
+  bool is_new() const { return is_new_; }             // open() has made it
 
  private:
   using Locks = std::array<vm::Descriptor, 2>;

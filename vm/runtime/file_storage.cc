@@ -14,6 +14,10 @@ base::Error failed(base::Refusal refusal, const std::string& path, int code) {
   return {refusal, path + ": " + std::strerror(code)};
 }
 
+base::Refusal unread(int code) {
+  return code == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
+}
+
 bool allowed(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; }
 
 // 0 or errno.
@@ -29,16 +33,33 @@ int write_all(int fd, uint64_t offset, base::ByteSpan bytes) {
   return 0;
 }
 
-int sync_directory(const std::string& path) {
-  Descriptor directory(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!directory.valid()) return errno;
-  return ::fsync(directory.get()) == 0 ? 0 : errno;
-}
-
 constexpr int kSafely = O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW;
 constexpr const char* kFresh = "_new";  // after the name, until it has its place
 
 }  // namespace
+
+FileStorage::FileStorage(std::string directory, int folder)
+    : directory_(std::move(directory)),
+      folder_(folder >= 0 ? ::fcntl(folder, F_DUPFD_CLOEXEC, 0)
+                          : ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
+      folder_code_(folder_.valid() ? 0 : errno) {}
+
+base::Status FileStorage::sync_folder() const {
+  if (::fsync(folder_.get()) == 0) return base::Ok{};
+  return failed(base::Refusal::kFileUnwritable, directory_, errno);
+}
+
+base::Status FileStorage::in_place(base::Refusal refusal) const {
+  struct stat there {};
+  struct stat opened {};
+  if (::stat(directory_.c_str(), &there) != 0) return failed(refusal, directory_, errno);
+  if (::fstat(folder_.get(), &opened) != 0) return failed(refusal, directory_, folder_code_);
+  if (opened.st_dev == there.st_dev && opened.st_ino == there.st_ino) return base::Ok{};
+  const char* const text =
+      ": another folder is there now, where nothing is written; move the one before back, or stop "
+      "the controller and start it with this one";
+  return base::Error{refusal, directory_ + text};
+}
 
 base::Result<std::string> FileStorage::path(std::string_view name) const {
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed)) {
@@ -50,23 +71,24 @@ base::Result<std::string> FileStorage::path(std::string_view name) const {
 base::Result<FileStorage::File> FileStorage::take(const std::string& path, bool create,
                                                   bool& created) const {
   created = false;
+  const int folder = folder_.get();
+  const char* const name = in_folder(path);
   Descriptor descriptor;
   int code = ENOENT;
   if (create) {
-    descriptor = Descriptor(::open(path.c_str(), O_RDWR | kSafely));
+    descriptor = Descriptor(::openat(folder, name, O_RDWR | kSafely));
     if (!descriptor.valid()) code = errno;
     if (code == ENOENT && !descriptor.valid()) {
-      descriptor = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0600));
+      descriptor = Descriptor(::openat(folder, name, O_RDWR | O_CREAT | O_EXCL | kSafely, 0600));
       created = descriptor.valid();
       if (!created) return failed(base::Refusal::kFileUnwritable, path, errno);
     }
   }
   const bool writable = descriptor.valid();
-  if (!writable) descriptor = Descriptor(::open(path.c_str(), O_RDONLY | kSafely));
+  if (!writable) descriptor = Descriptor(::openat(folder, name, O_RDONLY | kSafely));
   struct stat info {};
   if (!descriptor.valid() || ::fstat(descriptor.get(), &info) != 0) {
-    auto refusal = errno == ENOENT ? base::Refusal::kFileNotFound : base::Refusal::kFileUnreadable;
-    return failed(refusal, path, errno);
+    return failed(unread(errno), path, errno);
   }
   if (!S_ISREG(info.st_mode)) {
     return base::Error{base::Refusal::kFileUnreadable, path + ": not a file"};
@@ -86,32 +108,32 @@ base::Status FileStorage::allocate(File& file, const std::string& path, uint64_t
 base::Status FileStorage::settle_names() {
   std::lock_guard lock(mutex_);
   if (names_settled_) return base::Ok{};
-  const int code = sync_directory(directory_);
-  names_settled_ = code == 0;
-  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
-  return base::Ok{};
+  base::Status settled = sync_folder();
+  names_settled_ = settled.ok();
+  return settled;
 }
 
 // A name is durable only when its directory is.
 base::Status FileStorage::open(std::string_view name, uint64_t size) {
   base::Result<std::string> file_path = path(name);
   if (!file_path.ok()) return file_path.error();
+  base::Status placed = in_place(base::Refusal::kFileUnwritable);
+  if (!placed.ok()) return placed;
   const File* const before = find(name);
   // What a process that was killed in the middle of replace() has left.
-  if (before == nullptr) ::unlink((*file_path + kFresh).c_str());
+  if (before == nullptr) ::unlinkat(folder_.get(), in_folder(*file_path + kFresh), 0);
   bool created = false;
   base::Result<File> file = take(*file_path, true, created);
   if (!file.ok()) return file.error();
   const bool writable = file->writable;
   file->known = before != nullptr || created;
   base::Status done = writable ? allocate(*file, *file_path, size) : base::Ok{};
-  if (!done.ok() && created) ::unlink(file_path->c_str());
+  if (!done.ok() && created) ::unlinkat(folder_.get(), in_folder(*file_path), 0);
   if (!done.ok()) return done;
   keep(name, std::move(*file));
   if (!writable) return failed(base::Refusal::kFileUnwritable, *file_path, file->refused);
-  const int code = created ? sync_directory(directory_) : 0;
-  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
-  return settle_names();
+  base::Status named = created ? sync_folder() : base::Ok{};
+  return named.ok() ? settle_names() : named;
 }
 
 FileStorage::File* FileStorage::find(std::string_view name) {
@@ -131,6 +153,7 @@ base::Result<const FileStorage::File*> FileStorage::readable(std::string_view na
   if (const File* open = find(name)) return open;
   base::Result<std::string> file_path = path(name);
   if (!file_path.ok()) return file_path.error();
+  if (!folder_.valid()) return failed(unread(folder_code_), *file_path, folder_code_);
   bool created = false;
   base::Result<File> file = take(*file_path, false, created);
   if (!file.ok()) return file.error();
@@ -192,8 +215,11 @@ base::Status FileStorage::sync(std::string_view name) {
 base::Status FileStorage::check(std::string_view name) {
   const std::string file_path = *path(name);
   struct stat there {};
-  if (::lstat(file_path.c_str(), &there) != 0) {
-    if (errno != ENOENT) return failed(base::Refusal::kFileUnreadable, file_path, errno);
+  const int code = ::lstat(file_path.c_str(), &there) == 0 ? 0 : errno;
+  if (code != 0 && code != ENOENT) return failed(base::Refusal::kFileUnreadable, file_path, code);
+  base::Status placed = in_place(base::Refusal::kFileNotFound);
+  if (!placed.ok()) return placed;
+  if (code != 0) {
     return base::Error{base::Refusal::kFileNotFound, file_path + ": the file was removed"};
   }
   const File* const found = find(name);
@@ -208,8 +234,9 @@ base::Status FileStorage::check(std::string_view name) {
 
 base::Status FileStorage::write_new(const std::string& path, uint64_t size,
                                     std::span<const Piece> pieces, File& file) const {
-  ::unlink(path.c_str());
-  Descriptor descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kSafely, 0600));
+  const char* const name = in_folder(path);
+  ::unlinkat(folder_.get(), name, 0);
+  Descriptor descriptor(::openat(folder_.get(), name, O_RDWR | O_CREAT | O_EXCL | kSafely, 0600));
   if (!descriptor.valid()) return failed(base::Refusal::kFileUnwritable, path, errno);
   file = {.descriptor = std::move(descriptor), .writable = true, .known = true};
   base::Status made = allocate(file, path, size);
@@ -228,19 +255,21 @@ base::Status FileStorage::replace(std::string_view name, uint64_t size,
   base::Result<std::string> file_path = path(name);
   if (!file_path.ok()) return file_path.error();
   const std::string fresh = *file_path + kFresh;
+  const int folder = folder_.get();
   File file;
-  base::Status made = write_new(fresh, size, pieces, file);
-  if (made.ok() && ::rename(fresh.c_str(), file_path->c_str()) != 0) {
+  base::Status made = in_place(base::Refusal::kFileUnwritable);
+  if (!made.ok()) return made;
+  made = write_new(fresh, size, pieces, file);
+  if (made.ok() && ::renameat(folder, in_folder(fresh), folder, in_folder(*file_path)) != 0) {
     made = failed(base::Refusal::kFileUnwritable, *file_path, errno);
   }
   if (!made.ok()) {
-    ::unlink(fresh.c_str());
+    ::unlinkat(folder, in_folder(fresh), 0);
     return made;
   }
   keep(name, std::move(file));
-  const int code = sync_directory(directory_);
-  if (code != 0) return failed(base::Refusal::kFileUnwritable, directory_, code);
-  return check(name);
+  base::Status named = sync_folder();
+  return named.ok() ? check(name) : named;
 }
 
 }  // namespace vm

@@ -14,7 +14,9 @@ namespace vm {
 // Threads may use it at once, but not the same file.
 class FileStorage : public Storage {
  public:
-  explicit FileStorage(std::string directory) : directory_(std::move(directory)) {}
+  // `folder` is the directory, opened; without it, what is there now is opened. Nothing is written
+  // into another one that takes its place later.
+  explicit FileStorage(std::string directory, int folder = -1);
 
   // kFileUnwritable, kFileUnreadable. A file that cannot be written can be read after the error.
   base::Status open(std::string_view name, uint64_t size) override;
@@ -37,6 +39,13 @@ class FileStorage : public Storage {
 
   // Names are lower-case letters, digits and `_`: no file lies outside the directory.
   base::Result<std::string> path(std::string_view name) const;
+  // What path() gave, from the folder.
+  const char* in_folder(const std::string& path) const {
+    return path.c_str() + directory_.size() + 1;
+  }
+  // The folder is still where it was.
+  base::Status in_place(base::Refusal refusal) const;
+  base::Status sync_folder() const;
   base::Result<File> take(const std::string& path, bool create, bool& created) const;
   base::Status allocate(File& file, const std::string& path, uint64_t size) const;
   // What the process before has renamed is durable before anything is built on it.
@@ -50,7 +59,9 @@ class FileStorage : public Storage {
   base::Result<const File*> readable(std::string_view name);
 
   std::string directory_;
-  std::mutex mutex_;  // of the map and the flag alone
+  Descriptor folder_;
+  int folder_code_ = 0;  // why there is none
+  std::mutex mutex_;     // of the map and the flag alone
   bool names_settled_ = false;
   std::map<std::string, File, std::less<>> files_;
 };

@@ -1,6 +1,7 @@
 // Files of a directory as durable storage: allocated when they are opened, never longer or elsewhere.
 #include "vm/runtime/file_storage.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -12,6 +13,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 #include <vector>
 
 namespace {
@@ -222,6 +225,63 @@ TEST_F(FileStorageTest, WhatNobodyCanFindIsNotDurable) {
   std::filesystem::remove_all(directory_);
   EXPECT_FALSE(storage.sync("c").ok());
   EXPECT_EQ(storage.replace("c", 10, {}).error().refusal, base::Refusal::kFileUnwritable);
+}
+
+// --- a folder that is exchanged -----------------------------------------------------
+
+std::string content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(FileStorageTest, X5_NothingIsWrittenIntoAFolderThatTookThePlace) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  ASSERT_TRUE(storage.open("b", 10).ok());
+  const std::string moved = directory_ + "_moved";
+  std::filesystem::rename(directory_, moved);
+  std::filesystem::create_directory(directory_);
+  for (const char* name : {"/a", "/b", "/b_new"}) std::ofstream(directory_ + name) << "other";
+  EXPECT_EQ(storage.check("a").error().refusal, base::Refusal::kFileNotFound);
+  EXPECT_NE(storage.check("a").error().text.find("another folder"), std::string::npos);
+  EXPECT_EQ(storage.replace("a", 10, {}).error().refusal, base::Refusal::kFileUnwritable);
+  EXPECT_EQ(storage.open("b", 100).error().refusal, base::Refusal::kFileUnwritable);
+  EXPECT_FALSE(storage.open("c", 100).ok());
+  (void)storage.write("b", 0, base::Bytes{1}).ok();
+  EXPECT_FALSE(storage.sync("b").ok());
+  EXPECT_EQ(files(), 3u);
+  for (const char* name : {"/a", "/b", "/b_new"}) EXPECT_EQ(content(directory_ + name), "other");
+  std::filesystem::remove_all(directory_);
+  std::filesystem::rename(moved, directory_);
+  EXPECT_TRUE(storage.check("a").ok());
+  EXPECT_TRUE(storage.replace("a", 20, {}).ok()) << "the right one is back";
+  EXPECT_EQ(files(), 2u);
+}
+
+// A copy whose files are links to the same ones is another folder all the same.
+TEST_F(FileStorageTest, X5_AFolderWithTheSameFilesIsAnotherOne) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  const std::string moved = directory_ + "_moved";
+  std::filesystem::rename(directory_, moved);
+  std::filesystem::create_directory(directory_);
+  std::filesystem::create_hard_link(moved + "/a", directory_ + "/a");
+  EXPECT_FALSE(storage.check("a").ok());
+  std::filesystem::remove_all(moved);
+}
+
+// Between looking at the path and writing, the folder may go: what is written follows the folder.
+TEST_F(FileStorageTest, X5_TheFolderIsTheOneThatWasGiven) {
+  const std::string moved = directory_ + "_moved";
+  const int folder = ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  std::filesystem::rename(directory_, moved);
+  std::filesystem::create_directory(directory_);
+  std::ofstream(directory_ + "/a") << "other";
+  FileStorage storage(directory_, folder);
+  ::close(folder);
+  EXPECT_EQ(storage.read("a", 0, 5).error().refusal, base::Refusal::kFileNotFound);
+  EXPECT_FALSE(storage.open("a", 10).ok());
+  std::filesystem::remove_all(moved);
 }
 
 // --- what is durable, the disk has been told ----------------------------------------
