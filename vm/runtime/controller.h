@@ -213,8 +213,8 @@ class Controller {
   // has left anew.
   void construct();
   // At a boundary, after publish(): runs the start code, which makes what is new, at the time of
-  // the next cycle. kInitFailed when it traps: the published version must not run then. After a
-  // fault nothing is done.
+  // the next cycle. kInitFailed when it traps or takes longer than a base period: the published
+  // version must not run then. After a fault nothing is done.
   base::Status enter();
   // At a boundary: FB_Exit of these instances, those around others first. When one traps or takes
   // longer than `limit_ns`, the rest is left out and the old program can run on after construct().

@@ -75,7 +75,7 @@ bool Scheduler::run_inits() {
   base::check(at_boundary(), "instances are made while a task is inside a scan");
   pack_stale_outputs();
   const int64_t before = std::exchange(cycle_start_ns_, next_cycle_ns_);
-  const bool done = try_start_tasks(0);
+  const bool done = try_start_tasks(tables_->base_period_ns);
   cycle_start_ns_ = before;
   return done;
 }

@@ -149,6 +149,31 @@ std::string leaving_tank(const std::string& blocks, const std::string& more = ""
 }
 const std::string kLeaving = "a : Leaves; b : Stays;";
 
+TEST_P(KeptDataBy, X1_case34_AnFbInitThatTakesLongerThanABasePeriodIsNoChange) {
+  const auto source = [](const std::string& block) {
+    return "FUNCTION_BLOCK Slow METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; "
+           "END_VAR VAR i : DINT; END_VAR FOR i := 1 TO rounds DO inits := i; END_FOR END_METHOD "
+           "END_FUNCTION_BLOCK\n"
+           "VAR_GLOBAL rounds : DINT := 100_000; inits : DINT; END_VAR\n"
+           "PROGRAM Main VAR x : INT; " +
+           block +
+           " END_VAR x := x + 1; END_PROGRAM\n"
+           "CONFIGURATION C RESOURCE R ON PLC TASK T(INTERVAL := T#10ms, PRIORITY := 1); "
+           "PROGRAM Main WITH T : Main; END_RESOURCE END_CONFIGURATION";
+  };
+  Plant plant(source(""), no_slack(), 1000);
+  plant.use(GetParam());
+  plant.run(4);
+  EXPECT_EQ(switched(plant, source("s : Slow;")), Refusal::kInitFailed);
+  EXPECT_EQ(plant.get("inits"), "0");
+  EXPECT_FALSE(plant.controller().faulted());
+  plant.controller().cycle();  // the trap is on record
+  EXPECT_EQ(plant.get("Main.x"), "5");
+  plant.set("rounds", "2_000");
+  plant.change(source("s : Slow;"), true);
+  EXPECT_EQ(plant.get("inits"), "2000");
+}
+
 TEST_P(KeptDataBy, X1_case34_WhatFbExitWroteBeforeOneTrapsInASwitchIsAsItWas) {
   Plant plant(leaving_tank(kLeaving), no_slack());
   plant.use(GetParam());
