@@ -14,6 +14,8 @@ namespace {
 
 bool is_wide(ir::Scalar scalar) { return ir::scalar_size(scalar) == 8; }
 
+constexpr uint64_t kPastAll = uint64_t{1} << 32;  // elements: no variable has so many
+
 }  // namespace
 
 ir::Place ValueCode::target_place(ir::ValueId handle, ir::TypeId type) const {
@@ -31,10 +33,19 @@ ir::Place References::dereferenced_place(const Expr& expr) {
   set_line(expr.span);
   if (expr.kind == ExprKind::kDeref) return code_.target_place(pointer.value, target);
   const Typed index = natural(tree_.expr_lists[expr.list.first]);
-  return code_.target_place(
-      code_.moved(pointer.value,
-                  code_.machine_convert(index.value, scalar(index.type), ir::Scalar::kI64), target),
-      target);
+  const ir::ValueId count = index_of_elements(index.value, scalar(index.type));
+  return code_.target_place(code_.moved(pointer.value, count, target), target);
+}
+
+// So that its product with the size of an element, less than 2 GiB, is exact.
+ir::ValueId References::index_of_elements(ir::ValueId index, ir::Scalar from) {
+  if (is_wide(from)) {
+    index = build_.binary(ir::Op::kMin, from, index, build_.constant(from, kPastAll));
+    if (from == ir::Scalar::kI64) {
+      index = build_.binary(ir::Op::kMax, from, index, build_.constant(from, ~kPastAll + 1));
+    }
+  }
+  return code_.machine_convert(index, from, ir::Scalar::kI64);
 }
 
 ir::ValueId ValueCode::moved(ir::ValueId handle, ir::ValueId count, ir::TypeId element) {
@@ -199,7 +210,12 @@ MovedPointer References::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
   number = natural(first ? right : left);
   if (!first) sum = pointer_of_sum(right);
   const ir::Scalar i64 = ir::Scalar::kI64;
-  const ir::ValueId bytes = code_.machine_convert(number.value, scalar(number.type), i64);
+  ir::Scalar from = scalar(number.type);
+  if (from == ir::Scalar::kU32) {  // which wraps inside of an address
+    from = ir::Scalar::kI32;
+    number.value = build_.unary(ir::Op::kWrap, from, number.value);
+  }
+  const ir::ValueId bytes = code_.machine_convert(number.value, from, i64);
   if (sum.bytes.valid()) {
     sum.bytes =
         build_.binary(op == BinaryOp::kSub ? ir::Op::kSub : ir::Op::kAdd, i64, sum.bytes, bytes);

@@ -15,6 +15,7 @@ class References : public BodyPhase {
   using BodyPhase::BodyPhase;
 
   ir::Place dereferenced_place(const Expr& expr);
+  ir::ValueId index_of_elements(ir::ValueId index, ir::Scalar from);
   ir::Place addressable_place(ExprId id);
   ir::ValueId handle_of(ExprId id);
   ir::ValueId raw_reference(ExprId id);

@@ -74,6 +74,7 @@ Reach References::reach_in(const Home& home, uint64_t handle) {
 }
 
 uint64_t References::move(uint64_t handle, uint64_t bytes) const {
+  if (is_far(bytes)) return lost(handle);
   const Home* home = home_of(handle);
   const auto count = static_cast<uint32_t>(bytes);
   return home == nullptr ? move_offset(handle, count)

@@ -73,7 +73,7 @@
 //   fbp^(), ref()              call_instance target(vp : Fb)
 //   strings behind a pointer   s = string str target(vp : S80)  natives take it; copy works too
 //   REFERENCE TO as in-out     a = address addr target(vr : INT)  then store addr arg(F).x, a
-//   p + n (bytes)              v = move_handle u64 vp, vn       n: u64 or i64
+//   p + n (bytes)              v = move_handle u64 vp, vn       n: u64 or i64; far: lost
 //   p[n]                       the same with n * SIZEOF(target), then target(v : T)
 //   SIZEOF(T)                  v = size_of u32 T                an instance: what its variables
 //   take pointer to DWORD, back     v = flat u32 vp                  v = unflat u64 vd

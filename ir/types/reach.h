@@ -61,6 +61,11 @@ Reach reach_of(std::span<const Reach> sorted, uint32_t area_bytes, uint64_t hand
 // so many bytes, of which the low 32 bits count, with their sign. The same for one step as for
 // several in one direction.
 uint64_t moved_from(Reach reach, uint64_t handle, uint32_t bytes);
+// More bytes than an offset has: whatever moves by so many is outside of every variable.
+constexpr bool is_far(uint64_t bytes) {
+  return static_cast<int64_t>(bytes) != static_cast<int32_t>(bytes);
+}
+constexpr uint64_t lost(uint64_t handle) { return with_away(handle, kLost); }
 // The handle of segment `segment` that lies `position` bytes after the variable's begin.
 uint64_t handle_in(Reach reach, uint32_t segment, int64_t position);
 

@@ -13,7 +13,7 @@ namespace {
   if (handle) store<uint64_t>(result, *handle);
   return handle.has_value();
 }
-[[gnu::noinline]] uint64_t move_slowly(const Context* ctx, uint64_t handle, uint32_t bytes,
+[[gnu::noinline]] uint64_t move_slowly(const Context* ctx, uint64_t handle, uint64_t bytes,
                                        KnownReach* known) {
   return move_handle(*ctx, handle, bytes, *known);
 }
@@ -46,9 +46,12 @@ STC_INLINE uint32_t position_in(const KnownReach& known, uint64_t handle) {
   const bool same = static_cast<uint32_t>(handle >> 32) == known.segment;
   return same ? ir::handle_offset(handle) - known.begin : UINT32_MAX;
 }
-STC_INLINE uint64_t move_at(Context* ctx, const ir::Unit* pc, uint64_t handle, uint32_t bytes) {
+STC_INLINE uint64_t signed_part(uint32_t bytes) {
+  return static_cast<uint64_t>(int64_t{static_cast<int32_t>(bytes)});
+}
+STC_INLINE uint64_t move_at(Context* ctx, const ir::Unit* pc, uint64_t handle, uint64_t bytes) {
   KnownReach& known = known_at(ctx, pc);
-  const uint32_t position = position_in(known, handle);
+  const uint64_t position = position_in(known, handle);  // with all bits of `bytes`
   if (position < known.size && position + bytes < known.size) [[likely]]
     return ir::move_offset(handle, bytes);
   return move_slowly(ctx, handle, bytes, &known);
@@ -121,7 +124,7 @@ struct Semantics<ir::Opcode::HANDLE_ADD> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
     const auto handle = load<uint64_t>(STC_AT(B, pc->b));
-    const auto bytes = static_cast<uint32_t>(load<uint64_t>(STC_AT(C, pc->c)));
+    const auto bytes = load<uint64_t>(STC_AT(C, pc->c));
     store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, bytes));
     STC_NEXT(1);
   }
@@ -132,7 +135,7 @@ struct Semantics<ir::Opcode::HANDLE_STEP> : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
     const auto handle = load<uint64_t>(STC_AT(B, pc->b));
-    store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, pc[1].x()));
+    store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, signed_part(pc[1].x())));
     STC_NEXT(2);
   }
 };
@@ -149,7 +152,7 @@ struct HandleIndex : Special {
       return raise(ctx, ir::TrapKind::kIndex, pc, frame, self, static_cast<int64_t>(index), number);
     }
     const auto handle = load<uint64_t>(STC_AT(C, pc->c));
-    const auto bytes = static_cast<uint32_t>(pc[1].y() + steps * bound.stride);
+    const uint64_t bytes = pc[1].y() + steps * bound.stride;
     store<uint64_t>(frame + pc->a, move_at(ctx, pc, handle, bytes));
     STC_NEXT(2);
   }
@@ -169,7 +172,7 @@ struct Semantics<ir::Opcode::RESOLVE> : Special {
     uint32_t found = exactly ? 0 : resolve_at(ctx, pc, handle, pc[1].y(), pc[1].x());
     if (found == 0) [[unlikely]] {
       KnownReach& known = known_at(ctx, pc);
-      if (pc[1].y() != 0) handle = move_slowly(ctx, handle, pc[1].y(), &known);
+      if (pc[1].y() != 0) handle = move_slowly(ctx, handle, signed_part(pc[1].y()), &known);
       found = resolve_slowly(ctx, handle, exactly, pc[1].x(), &known);
       if (found == 0) [[unlikely]]
         return raise_reference(ctx, pc, frame, self, handle, exactly ? 0 : pc[1].x());
@@ -183,7 +186,8 @@ template <uint32_t unit>
 struct ResolveString : Special {
   template <ir::Base A, ir::Base B, ir::Base C>
   STC_INLINE void run(STC_HANDLER_ARGS) {
-    const uint64_t handle = move_at(ctx, pc, load<uint64_t>(STC_AT(B, pc->b)), pc[1].y());
+    const uint64_t handle =
+        move_at(ctx, pc, load<uint64_t>(STC_AT(B, pc->b)), signed_part(pc[1].y()));
     const uint64_t found = resolve_text(ctx, handle, pc[1].x(), unit);
     if (found == 0) [[unlikely]]
       return raise_reference(ctx, pc, frame, self, handle, unit);

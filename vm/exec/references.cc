@@ -141,7 +141,9 @@ std::optional<Home> find_home(const Context& ctx, uint64_t handle) {
   return Home{local->begin, ir::reach_of(whole, local->size, handle), nullptr, 0};
 }
 
-uint64_t move_handle(const Context& ctx, uint64_t handle, uint32_t bytes, KnownReach& known) {
+uint64_t move_handle(const Context& ctx, uint64_t handle, uint64_t way, KnownReach& known) {
+  if (ir::is_far(way)) return ir::lost(handle);
+  const auto bytes = static_cast<uint32_t>(way);
   const uint32_t from = ir::handle_offset(handle);
   if (const AreaEntry* const area = area_inside(ctx, handle)) {
     const ir::Reach reach = ir::reach_at(reaches_of(ctx, *area), from);
@@ -176,13 +178,13 @@ uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, Known
 
 uint64_t resolve_for_code(Context* ctx, uint64_t handle, uint64_t size_and_bytes, uint64_t site) {
   KnownReach& known = ctx->reaches[site];
-  const auto bytes = static_cast<uint32_t>(size_and_bytes);
-  if (bytes != 0) handle = move_handle(*ctx, handle, bytes, known);
+  const auto bytes = static_cast<int32_t>(size_and_bytes);
+  if (bytes != 0) handle = move_handle(*ctx, handle, static_cast<uint64_t>(bytes), known);
   return resolve_bytes(*ctx, handle, static_cast<uint32_t>(size_and_bytes >> 32), known);
 }
 
 uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t site) {
-  return move_handle(*ctx, handle, static_cast<uint32_t>(bytes), ctx->reaches[site]);
+  return move_handle(*ctx, handle, bytes, ctx->reaches[site]);
 }
 
 uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site) {

@@ -19,9 +19,8 @@ struct Home {
 
 // What the handle's segment names; nullopt when it is gone or never was.
 std::optional<Home> find_home(const Context& ctx, uint64_t handle);
-// The handle moved by the low 32 bits of `bytes`, with their sign (ir/types/reach.h). Keeps the
-// variable in `known`.
-uint64_t move_handle(const Context& ctx, uint64_t handle, uint32_t bytes, KnownReach& known);
+// The handle moved by `bytes`, with their sign (ir/types/reach.h). Keeps the variable in `known`.
+uint64_t move_handle(const Context& ctx, uint64_t handle, uint64_t bytes, KnownReach& known);
 // Data offset of `size` bytes of its variable that hold no slot; 0 when they are not there. Keeps
 // the variable in `known`.
 uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, KnownReach& known);

@@ -152,7 +152,7 @@ void Builder::move_handle() {
     bytes = read_c();
   } else if (op == Opcode::HANDLE_STEP) {
     handle = read_b();
-    bytes = constant(x_.x(), 8, false);
+    bytes = constant(static_cast<uint64_t>(int64_t{static_cast<int32_t>(x_.x())}), 8, false);
   } else {
     const ir::LinkedBound& bound = facts_.image().bounds[x_.x()];
     const Val index = read_b();

@@ -83,7 +83,7 @@ enum class Op : uint8_t {
   // data address of the bytes that the handle in[0] names, moved by the low half of imm, whose high
   // half says how many; leaves at `exit` when they are not there
   kResolve,
-  kMoveHandle,  // the handle in[0] moved by the low 4 bytes of in[1]
+  kMoveHandle,  // the handle in[0] moved by in[1] bytes, with all of their 8 bytes
   // In front of a loop (walk.cc): how far behind the first byte of its variable the handle in[0]
   // is, which `site` knows from then on. What cannot be walked over is further away than its size.
   kReach,

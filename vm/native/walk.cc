@@ -295,46 +295,14 @@ void Walk::move(uint32_t number, Block b) {
   const Node n = f_.nodes[number];
   const Walker& w = *walker(n.in[0]);
   const Val from = distance_.at(n.in[0]);
-  Val by = n.in[1];
-  int64_t bytes = -1;
-  if (f_.values[by].constant) {
-    bytes = static_cast<int32_t>(f_.values[by].bits);
-    by = constant(static_cast<uint64_t>(bytes), 8);
-  } else if (!is_within(by, 31)) {
-    Node wide;
-    wide.op = Op::kSext;
-    wide.width = 8;
-    wide.from = 4;
-    wide.in[0] = by;
-    out_.push_back(made(wide, b));
-    by = f_.nodes.back().result;
-  }
+  const Val by = n.in[1];
+  const Value& way = f_.values[by];
+  const int64_t bytes = way.constant ? static_cast<int64_t>(way.bits) : -1;
   const Val to = append(Op::kAdd, 8, from, by, b);
   lies_at(n.result, to);
   if (steps_.find(n.result) != nullptr) return;
   if (!is_covered(from, bytes, b)) leave_if(Cond::kGtU, to, w.size, n.exit);
   out_.push_back(handle_at(n.result, to, b));
-}
-
-bool Walk::is_within(Val v, uint32_t bits) const {
-  const Value& value = f_.values[v];
-  if (value.constant || value.node == kNone) return false;
-  const Node& n = f_.nodes[value.node];
-  const bool times = (n.op == Op::kMul || n.op == Op::kShl) && f_.values[n.in[1]].constant;
-  switch (n.op) {
-    case Op::kSext:
-    case Op::kZext:
-      return 8u * n.from <= bits;
-    case Op::kMul:
-    case Op::kShl: {
-      if (!times || n.width != 8) return false;
-      const uint64_t by = f_.values[n.in[1]].bits;
-      const uint64_t more = n.op == Op::kShl ? by : static_cast<uint64_t>(std::bit_width(by));
-      return more <= bits && is_within(n.in[0], bits - static_cast<uint32_t>(more));
-    }
-    default:
-      return false;
-  }
 }
 
 void Walk::select(uint32_t number, Block b) {

@@ -136,9 +136,6 @@ class Walk {
 
   void move(uint32_t number, Block b);
 
-  // Is it a number between -2^bits and 2^bits, whatever it is made of?
-  bool is_within(Val v, uint32_t bits) const;
-
   void select(uint32_t number, Block b);
 
   // WHILE p < stop: where the head asks whether a pointer is in front of another one, it asks for a

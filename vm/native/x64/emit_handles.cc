@@ -87,7 +87,7 @@ void Emitter::move_handle(const Node& n, const Step& step) {
     a_.address(to, {handle, 0xff, 1, true, by}, 8);
   } else {
     // With all 64 bits: what goes past 4 GB is outside, too.
-    a_.load_signed(kScratch, Operand::of(integer_register(bytes)), 4);
+    a_.move(kScratch, integer_register(bytes));
     a_.alu(Alu::kAdd, kScratch, Operand::of(handle), 8);
     a_.alu(Alu::kSub, kScratch, Operand::of(KNOWN(begin)), 8);
     a_.alu(Alu::kCmp, kScratch, Operand::of(KNOWN(size)), 8);

@@ -88,7 +88,6 @@ bool X64Target::takes_constant(const Function& f, const Node& node, uint32_t ope
     case Op::kStore:
       return operand == 0;
     case Op::kMoveHandle:
-      return operand == 1;
     case Op::kAdd:
     case Op::kSub:
     case Op::kMul:
