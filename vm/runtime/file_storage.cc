@@ -228,8 +228,11 @@ base::Status FileStorage::check(std::string_view name) {
   if (::fstat(found->descriptor.get(), &opened) != 0) {
     return failed(base::Refusal::kFileUnreadable, file_path, errno);
   }
-  if (opened.st_dev == there.st_dev && opened.st_ino == there.st_ino) return base::Ok{};
-  return base::Error{base::Refusal::kFileNotFound, file_path + ": another file is there now"};
+  if (opened.st_dev != there.st_dev || opened.st_ino != there.st_ino) {
+    return base::Error{base::Refusal::kFileNotFound, file_path + ": another file is there now"};
+  }
+  if (static_cast<uint64_t>(opened.st_size) >= found->size) return base::Ok{};
+  return base::Error{base::Refusal::kFileNotFound, file_path + ": the file became shorter"};
 }
 
 base::Status FileStorage::write_new(const std::string& path, uint64_t size,

@@ -227,6 +227,17 @@ TEST_F(FileStorageTest, WhatNobodyCanFindIsNotDurable) {
   EXPECT_EQ(storage.replace("c", 10, {}).error().refusal, base::Refusal::kFileUnwritable);
 }
 
+TEST_F(FileStorageTest, WhatWasCutOffIsNotDurable) {
+  FileStorage storage(directory_);
+  ASSERT_TRUE(storage.open("a", 10).ok());
+  std::filesystem::resize_file(directory_ + "/a", 9);
+  EXPECT_EQ(storage.check("a").error().refusal, base::Refusal::kFileNotFound);
+  ASSERT_TRUE(storage.write("a", 0, base::Bytes{1}).ok());
+  EXPECT_NE(storage.sync("a").error().text.find("became shorter"), std::string::npos);
+  ASSERT_TRUE(storage.replace("a", 10, {}).ok());
+  EXPECT_TRUE(storage.check("a").ok());
+}
+
 // --- a folder that is exchanged -----------------------------------------------------
 
 std::string content(const std::string& path) {
