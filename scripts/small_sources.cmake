@@ -47,6 +47,8 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/online_change/diff/place_moves.cc
      ${CMAKE_SOURCE_DIR}/online_change/package/plan_check.cc
      ${CMAKE_SOURCE_DIR}/ir/types/value_text.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_charts.cc
+     ${CMAKE_SOURCE_DIR}/base/diagnostics*.cc ${CMAKE_SOURCE_DIR}/base/warning_policy.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/state_sum.cc ${CMAKE_SOURCE_DIR}/vm/runtime/summaries.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/task_activity.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_states.cc
      ${CMAKE_SOURCE_DIR}/vm/load/left_outputs.cc ${CMAKE_SOURCE_DIR}/vm/runtime/forces.cc
