@@ -18,6 +18,12 @@ void Store::recover_retained() {
     }
     in_copy_[i] = RetainHead{records[i]->image, records[i]->trial};
   }
+  // Values are saved of a program that runs. So one did, also where nothing of them can be read.
+  for (size_t i = 0; i < 3; ++i) {
+    if (!recovered_.virgin || retained_[i].record.state == RecordState::kEmpty) continue;
+    recovered_.virgin = false;
+    recovered_.nothing = "both control records are empty, and a program ran there";
+  }
   const std::optional<size_t> newest = newest_retained();
   const std::optional<size_t> before = retained_before();
   if (newest) recovered_.newest = std::move(records[*newest]);

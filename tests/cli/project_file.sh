@@ -156,3 +156,18 @@ done
 expect 7 stvm run plant --virtual-time --scans 1
 said '^plant/stc.toml:1:1: error\[R0506\]: unknown key `nmae`'
 grep -q '^    1 | nmae = "x"$' err || fail "the line, by stvm"
+
+# A byte order mark in front, as editors of Windows write it, is nothing; a table twice is a mistake.
+mkdir marked
+printf 'PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n' >marked/a.st
+printf '\357\273\277name = "x"\nnmae = "y"\n' >marked/stc.toml
+expect 7 stc check marked
+said '^marked/stc.toml:2:1: error\[R0506\]: unknown key `nmae`'
+printf '\357\273\277nmae = "y"\n' >marked/stc.toml
+expect 7 stc check marked
+said '^marked/stc.toml:1:1: error\[R0506\]: unknown key `nmae`'
+printf '\357\273\277sources = ["a.st"]\n[warnings]\nW0003 = "off"\n' >marked/stc.toml
+expect 0 stc check marked
+printf '\n[warnings] # again\nW0013 = "off"\n' >>marked/stc.toml
+expect 7 stc check marked
+said '^marked/stc.toml:5:11: error\[R0506\]: table `warnings` is given twice'

@@ -17,6 +17,7 @@ class Parser {
   Parser(std::string_view file, std::string_view text) : file_(file), text_(text) {}
 
   base::Result<TomlTable> run() {
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = line_start_ = 3;  // as editors of Windows begin
     while (at_ < text_.size() && !failed_) line();
     if (failed_) return error_;
     return std::move(table_);
@@ -77,6 +78,8 @@ class Parser {
         prefix_ += std::to_string(++of_many_[prefix_]) + ".";
         if (!failed_ && peek() != ']') fail("expected `]]` after the table's name");
         ++at_;
+      } else if (!of_many_.emplace(prefix_, 0).second) {
+        fail("table `" + prefix_.substr(0, prefix_.size() - 1) + "` is given twice");
       }
     } else if (is_key_char(peek())) {
       entry();
@@ -201,7 +204,7 @@ class Parser {
   size_t line_start_ = 0;
   uint32_t line_ = 1;
   std::string prefix_;
-  std::map<std::string, size_t> of_many_;  // tables that each [[name]] has had
+  std::map<std::string, size_t> of_many_;  // tables that each [[name]] has had; 0: of [name]
   TomlTable table_;
   bool failed_ = false;
   base::Error error_{base::Refusal::kBadProject, {}};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "vm/runtime/frames.h"
@@ -114,6 +115,8 @@ base::Result<base::Bytes> SocketClient::ask(base::ByteSpan request, bool& closed
   }
   FrameReader reader;
   uint8_t buffer[65536];
+  std::optional<std::chrono::steady_clock::time_point> begun;  // when the first bytes came
+  const std::chrono::seconds patience(patience_s_);
   for (;;) {
     if (std::optional<base::Bytes> answer = reader.next()) return std::move(*answer);
     if (reader.broken()) {
@@ -121,10 +124,14 @@ base::Result<base::Bytes> SocketClient::ask(base::ByteSpan request, bool& closed
     }
     ssize_t n = ::recv(socket_.get(), buffer, std::min(sizeof buffer, reader.room()), 0);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0 && errno == EAGAIN) {
+    // One that says a byte now and then says nothing.
+    const auto now = std::chrono::steady_clock::now();
+    const bool late = n > 0 && now - begun.value_or(now) > patience;
+    if (late || (n < 0 && errno == EAGAIN)) {
       socket_ = Descriptor();
       return lost("does not answer");
     }
+    if (!begun) begun = now;
     closed = n <= 0;
     if (closed) return lost("closed the connection");
     reader.add({buffer, static_cast<size_t>(n)});

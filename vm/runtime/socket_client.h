@@ -22,10 +22,10 @@ class SocketClient : public Transport {
   // Over a socket that is connected already; `place` for messages: "on plc7".
   static std::unique_ptr<SocketClient> over(Descriptor socket, std::string place,
                                             uint32_t patience_s = kPatienceSeconds);
-  // One framed message each way; kNotRunning when the other side goes away or says nothing for
-  // longer than the patience, and then the connection is given up: what comes late would be taken
-  // for another answer. One that went away while nothing was asked, as it does with idle clients,
-  // is looked for again.
+  // One framed message each way; kNotRunning when the other side goes away, says nothing for longer
+  // than the patience, or takes longer from the first byte of an answer to the last; then the
+  // connection is given up: what comes late would be taken for another answer. One that went away
+  // while nothing was asked, as it does with idle clients, is looked for again.
   base::Result<base::Bytes> exchange(base::ByteSpan request) override;
 
  private:

@@ -440,5 +440,29 @@ TEST_F(Places, IdleOnesEnd) {
   EXPECT_EQ(connections_.size(), 0u);
 }
 
+// A byte now and then keeps nobody: the client goes before half of an answer of a minute has come.
+TEST(SocketClientTest, AnAnswerThatDripsIsGivenUp) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  auto client = SocketClient::over(Descriptor(ends[0]), "here", 1);
+  int sent = 0;
+  std::thread peer([&] {
+    const base::Bytes answer = frame(base::Bytes(600, 1));
+    for (uint8_t byte : answer) {
+      if (::send(ends[1], &byte, 1, MSG_NOSIGNAL) != 1) break;
+      ++sent;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    ::close(ends[1]);
+  });
+  const base::Bytes request = {1};
+  const base::Result<base::Bytes> answer = client->exchange(request);
+  peer.join();
+  ASSERT_FALSE(answer.ok());
+  EXPECT_EQ(answer.error().refusal, base::Refusal::kNotRunning);
+  EXPECT_NE(answer.error().text.find("does not answer"), std::string::npos) << answer.error().text;
+  EXPECT_LT(sent, 300);
+}
+
 }  // namespace
 }  // namespace vm

@@ -164,6 +164,20 @@ TEST_F(NoProgram, case56_OneThatCannotBeStoredIsRefused) {
   EXPECT_EQ(plc_->get("v"), "9");
 }
 
+// A folder in which a program ran is no new one, whatever is left of it.
+TEST_F(NoProgram, case56_OfDamagedValuesAndEmptyRecordsAControllerIsMadeToo) {
+  lose("retain");
+  for (size_t file = 0; file < disk_.names().size(); ++file) {
+    if (disk_.names()[file].starts_with("retain")) continue;
+    std::fill(disk_.content(file).begin(), disk_.content(file).end(), 0);
+    disk_.settle(file);
+  }
+  ASSERT_TRUE(plc_->boot().ok());
+  EXPECT_TRUE(holds_nothing());
+  EXPECT_TRUE(plc_->status().faulted);
+  EXPECT_TRUE(says("both control records are empty, and a program ran there, and no other")) << alarms();
+}
+
 // A mistake in the name of a folder must not become a controller.
 TEST_F(NoProgram, R09_ANewFolderWaitsForItsFirstProgramOnlyWhereThatIsAskedFor) {
   cut();
