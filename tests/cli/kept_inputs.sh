@@ -54,3 +54,12 @@ expect 0 stc build pr -o empty.st
 cp pr/main.st values.svg
 expect 7 stc draw pr/main.st --values values.svg -o values.svg
 cmp pr/main.st values.svg || fail "the values were overwritten"
+
+# A file is signed in place; the key is kept.
+if stc key new -o sign.key >out 2>&1; then
+  expect 0 stc key sign pr.img --key sign.key -o pr.img
+  cp sign.key sign.kept
+  expect 7 stc key sign pr.img --key sign.key -o sign.key
+  said 'R0503'
+  cmp sign.key sign.kept || fail "the key was overwritten"
+fi

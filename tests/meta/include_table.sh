@@ -28,7 +28,7 @@ adapters/xml: frontend/lex frontend/network
 adapters/codesys: adapters/xml
 adapters/text_export: adapters/xml frontend/lex frontend/network stdlib
 adapters/twincat: adapters/xml frontend/network
-adapters/plcopen: adapters/xml frontend/network frontend/ladder frontend/fbd frontend/lex frontend/parse ir/types
+adapters/plcopen: adapters/xml frontend/network frontend/ladder frontend/fbd frontend/lex frontend/parse ir/types stdlib
 online_change/diff: ir linker
 online_change/plan: ir linker online_change/diff
 online_change/package: ir linker online_change/diff online_change/plan

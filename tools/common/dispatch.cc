@@ -152,7 +152,8 @@ static int run_tool(const Tool& tool, int argc, char** argv) {
   for (const Entry* entry : tool.entries) {
     if (verb != entry->command->name) continue;
     return with_options(tool, *entry->command, args, [&](const Options& given) {
-      base::Status free = check_outputs(given);
+      // What is signed may be signed in place.
+      base::Status free = check_outputs(given, verb == "key");
       return free.ok() ? entry->run(given) : refuse(tool.name, free.error());
     });
   }

@@ -64,11 +64,12 @@ base::Status check_output(const std::string& output, const std::vector<std::stri
   return takes(output, inputs, any_source) ? taken(output) : base::Status(base::Ok{});
 }
 
-base::Status check_outputs(const Options& options) {
+base::Status check_outputs(const Options& options, bool in_place) {
   for (const auto& [name, outputs] : options.values()) {
     if (!is_output(name)) continue;
     // With --force a command decides itself which source it replaces.
-    bool lost = takes(outputs[0], options.arguments(), !options.has("--force"));
+    const std::vector<std::string> none;
+    bool lost = takes(outputs[0], in_place ? none : options.arguments(), !options.has("--force"));
     for (const auto& [other, inputs] : options.values()) {
       lost |= &inputs != &outputs && takes(outputs[0], inputs, false);
     }

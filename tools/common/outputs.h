@@ -16,8 +16,9 @@ base::Status check_output(const std::string& output, const std::vector<std::stri
                           bool any_source = true);
 // Of what the options name, against what the command line names to be read. dispatch() asks it for
 // every command; those that read more than they name ask check_output(). With --force a command
-// decides itself which source it replaces.
-base::Status check_outputs(const Options& options);
+// decides itself which source it replaces. `in_place`: the file itself may be written again,
+// signed.
+base::Status check_outputs(const Options& options, bool in_place);
 
 // By its extension.
 bool is_source_name(const std::string& path);

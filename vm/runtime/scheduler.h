@@ -27,8 +27,8 @@ class Scheduler {
   // At a boundary: them, for instances that leave. A trap, or more than `limit_ns`, ends them, and
   // nothing else: false.
   bool run_exits(int64_t limit_ns);
-  // Runs inits of instances that are new, at the time of the next cycle. A trap, or more than a base
-  // period, ends them: false.
+  // Runs inits of instances that are new, at the time of the next cycle. A trap, or more than a
+  // base period, ends them: false.
   bool run_inits();
   // At a boundary, also after a fault: every task runs again, in its phase; none has missed a
   // release until then.
