@@ -57,12 +57,15 @@ void Selector::clean_given_texts() {
     const bool given = local.kind == LocalKind::kInput && values_.local_escapes(i);
     const Kind kind = types()[local.type].kind;
     if (!given || (kind != Kind::kString && kind != Kind::kWstring)) continue;
-    Location to;
-    to.place.root = PlaceRoot::kSlot;
-    to.place.slot = i;
-    to.place.result = {local.type, 0};
-    Location clean = to;
-    clean.place.slot = static_cast<uint32_t>(object_.slots.size());
+    const auto text_in = [&](uint32_t slot) {
+      Location at;
+      at.place.root = PlaceRoot::kSlot;
+      at.place.slot = slot;
+      at.place.result = {local.type, 0};
+      return at;
+    };
+    const Location to = text_in(i);
+    const Location clean = text_in(static_cast<uint32_t>(object_.slots.size()));
     Slot slot = object_.slots[i];
     slot.kind = SlotKind::kLocal;
     slot.local = LocalKind::kTemp;
