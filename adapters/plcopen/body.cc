@@ -59,7 +59,8 @@ void report_code(std::string_view text, Node node, Reporter& report) {
       continue;
     }
     const std::string_view close = comment ? "*)" : first == '/' ? "\n" : first == '{' ? "}" : "";
-    const size_t end = text.find(close.empty() ? std::string_view(&first, 1) : close, at + 1);
+    const size_t end =
+        text.find(close.empty() ? std::string_view(&first, 1) : close, at + (comment ? 2 : 1));
     if (end == std::string_view::npos) return;
     const std::string_view inside = text.substr(at + 1, end - at - 1);
     if (first == '{' && is_code(inside)) {

@@ -71,7 +71,7 @@ Extent usual_extent(Node element) {
   if (name == "jumpStep") return {12, 13};
   if (name == "actionBlock") return {120, 30};
   if (name.ends_with("vergence")) return {100, name.starts_with("simultaneous") ? 3 : 1};
-  const Node text = element.child("expression") ? element.child("expression") : Node();
+  const Node text = element.child("expression");
   const std::string_view label = text ? text.child_value() : element.attribute("label").value();
   const std::string_view named = element.attribute("name").value();
   return extent_of_text(characters(label.empty() ? named : label));
@@ -200,7 +200,8 @@ class Body {
         std::distance(element.children(name).begin(), element.children(name).end()));
     int number = 0;
     for (Node pin : element.children(name)) {
-      const int x = count == 1 ? width / 2 : width * number / (count - 1);
+      const int64_t all = int64_t{width} * number;  // a document may say any width
+      const int x = count == 1 ? width / 2 : static_cast<int>(all / (count - 1));
       ++number;
       give_pin(pin, {x, y});
     }

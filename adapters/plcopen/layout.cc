@@ -65,8 +65,11 @@ Layout lay_out(const network::Network& network, int32_t top, bool by_order) {
     free[at] = out[i].y + extent.height + 30;
     bottom = std::max(bottom, free[at]);
   }
-  std::vector<int32_t> left = {20};  // of each column
-  for (int32_t each : wide) left.push_back(left.back() + (by_order ? 150 : each + 60));
+  std::vector<int32_t> left = {20};        // of each column
+  constexpr int32_t kFar = 1'000'000'000;  // what is deeper stands there, one over the other
+  for (int32_t each : wide) {
+    left.push_back(std::min(left.back() + (by_order ? 150 : each + 60), kFar));
+  }
   for (size_t i = 0; i < count; ++i) out[i].x = left[column[i]];
   return {std::move(out), bottom};
 }
