@@ -2,6 +2,7 @@
 #include "adapters/mqtt/broker.h"
 
 #include <mosquitto.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -30,6 +31,17 @@ base::Status status_of(int code, const std::string& what) {
   const bool gone = code == MOSQ_ERR_NO_CONN || code == MOSQ_ERR_CONN_LOST;
   return base::Error{gone ? Refusal::kNotRunning : Refusal::kDeviceFailed,
                      what + ": " + mosquitto_strerror(code)};
+}
+
+// Whoever has a password or a private key is this side. A group may share one.
+base::Status check_secret(const std::string& path) {
+  struct stat about {};
+  const bool known = ::stat(path.c_str(), &about) == 0 && S_ISREG(about.st_mode);
+  if (!known || (about.st_mode & 07) == 0) return base::Ok{};
+  return base::Error{Refusal::kBadKeys,
+                     path +
+                         ": everybody on this machine can read or write this secret; chmod 640 "
+                         "or 600 it, or make another one if somebody may have done so"};
 }
 
 base::Result<std::string> first_line(const std::string& path) {
@@ -133,6 +145,8 @@ class Mosquitto : public Broker {
     if (!settings.user.empty()) {
       std::string password;
       if (!settings.password_file.empty()) {
+        base::Status own = check_secret(settings.password_file);
+        if (!own.ok()) return own;
         base::Result<std::string> line = first_line(settings.password_file);
         if (!line.ok()) return line.error();
         password = *line;
@@ -147,6 +161,7 @@ class Mosquitto : public Broker {
       if (file->empty() || ::access(file->c_str(), R_OK) == 0) continue;
       return base::Error{Refusal::kFileNotFound, *file + ": cannot be read"};
     }
+    if (base::Status own = check_secret(settings.key); !own.ok()) return own;
     base::Status trusted = status_of(
         mosquitto_tls_set(client_, text_or_null(settings.ca),
                           settings.ca.empty() ? "/etc/ssl/certs" : nullptr,

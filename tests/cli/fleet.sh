@@ -170,25 +170,21 @@ serve seven new.st
 serve eight new.st
 serve nine new.st
 cat >ask.py <<'PY'
-import os, pty, sys
+import os, subprocess, sys, threading
 answers, command = sys.argv[1].split(","), sys.argv[2:]
-pid, terminal = pty.fork()
-if pid == 0:
-    os.execvp(command[0], command)
+own, terminal = os.openpty()
+process = subprocess.Popen(command, stdin=terminal, stdout=terminal, stderr=terminal)
+# What is last on a terminal that nobody has open may be lost, so it stays open here until this comes.
+end = b"<end of the command>"
+threading.Thread(target=lambda: (process.wait(), os.write(terminal, end)), daemon=True).start()
 said = b""
-while True:
-    try:
-        piece = os.read(terminal, 4096)
-    except OSError:
-        break
-    if not piece:
-        break
-    said += piece
+while not said.endswith(end):
+    said += os.read(own, 4096)
     if said.endswith(b"[y/N/all/quit] "):
-        os.write(terminal, answers.pop(0).encode() + b"\n")
+        os.write(own, answers.pop(0).encode() + b"\n")
         said += b"\n"
-sys.stdout.write(said.decode().replace("\r", ""))
-sys.exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
+sys.stdout.write(said[: -len(end)].decode().replace("\r", ""))
+sys.exit(process.returncode)
 PY
 by() {  # by ANSWERS [VERB]
   python3 ask.py "$1" "$bin/stvm" fleet "${2:-change}" round.fleet --dir seven --dir eight --dir nine \

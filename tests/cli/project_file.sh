@@ -133,7 +133,7 @@ T
 refused 1:17 'the text of `sources` has control characters' <<'T'
 sources = ["a", "b\tc"]
 T
-printf 'name = "a\033[2Jb"\n' | refused 1:8 'the text of `name` has control characters'
+printf 'name = "a\033[2Jb"\n' | refused 1:10 'a text has no control characters'
 echo 'name = "a"' | toml
 expect 2 stc check plant --name "$(printf 'a\033[2J')"
 printf '[devices.press]\ndriver = "modbus"\n' >plant/stc.toml

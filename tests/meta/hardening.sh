@@ -14,7 +14,7 @@ status=0
 must() { echo "$4" | grep -qE "$3" || { echo "$1: $2"; status=1; }; }
 must_not() { ! echo "$4" | grep -qE "$3" || { echo "$1: $2"; status=1; }; }
 
-for name in stc stvm; do
+for name in stc stvm stvm-agent stvm-fleet; do
   header=$(readelf -hW "$2/bin/$name")
   segments=$(readelf -lW "$2/bin/$name")
   dynamic=$(readelf -dW "$2/bin/$name")

@@ -7,6 +7,11 @@
 namespace tools {
 namespace {
 
+// TOML has them in texts as escapes only.
+bool is_control(char c) {
+  return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == '\x7f';
+}
+
 bool is_key_char(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
          c == '-';
@@ -137,6 +142,10 @@ class Parser {
         fail("text without closing quote");
         return out;
       }
+      if (is_control(peek())) {
+        fail("a text has no control characters but \\n and \\t, written so");
+        return out;
+      }
       if (peek() != '\\') {
         out += peek();
         continue;
@@ -212,9 +221,22 @@ class Parser {
 
 }  // namespace
 
+std::string toml_quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (c == '\n' || c == '\t') {
+      out += c == '\n' ? "\\n" : "\\t";
+    } else {
+      out += is_control(c) ? ' ' : c;
+    }
+  }
+  return out + "\"";
+}
+
 base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what) {
-  return {base::Refusal::kBadProject, base::joined({file, ":", std::to_string(line), ":",
-                                                    std::to_string(column), ": ", what})};
+  return {base::Refusal::kBadProject,
+          base::joined({file, ":", std::to_string(line), ":", std::to_string(column), ": ", what})};
 }
 
 base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text) {

@@ -1,7 +1,8 @@
 // The subset of TOML that stc.toml uses: comments, [tables] and [tables.of.tables], [[tables]] of
 // which there are several (the keys of the first are those of [tables.1]), `key = value`
-// with strings ("..." with \" \\ \n \t), decimal integers with `_`, true/false, and arrays of
-// strings. Anything else is an error with line and column (kBadProject).
+// with strings ("..." with \" \\ \n \t and no other control characters), decimal integers with
+// `_`, true/false, and arrays of strings. Anything else is an error with line and column
+// (kBadProject).
 #pragma once
 
 #include <cstdint>
@@ -34,6 +35,8 @@ using TomlTable = std::map<std::string, TomlValue>;
 
 // `file` is named in errors: "stc.toml:3:7: ...".
 base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text);
+// A text in quotes, for the other direction. Blanks take the place of what cannot stand there.
+std::string toml_quoted(std::string_view text);
 base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what);
 
 }  // namespace tools

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <ctime>
 
+#include "base/joined.h"
 #include "tools/common/child.h"
 #include "tools/common/files.h"
-#include "tools/common/json.h"
 #include "tools/stvm/fleet_agents.h"
 #include "tools/stvm/package_making.h"
 
@@ -80,8 +80,7 @@ std::string broker_text(const FleetBroker& broker) {
   for (const BrokerKey& key : kBrokerKeys) {
     const std::string& value = key.of(copy);
     if (value.empty()) continue;
-    tools::JsonWriter text;  // a text of TOML is written as one of JSON here
-    out += std::string(key.name) + " = " + text.value(value).finish();
+    out += base::joined({key.name, " = ", tools::toml_quoted(value), "\n"});
   }
   return out;
 }

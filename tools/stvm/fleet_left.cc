@@ -7,7 +7,7 @@
 
 #include "base/joined.h"
 #include "tools/common/files.h"
-#include "tools/common/json.h"
+#include "tools/common/toml.h"
 #include "tools/stvm/fleet_broker.h"
 
 namespace stvm {
@@ -22,21 +22,13 @@ std::string verb_in(const std::string& text, const base::Digest& digest) {
   return std::string(line.substr(2, blank - 2));
 }
 
-// A text of TOML, which is written as one of JSON here.
-std::string toml_text(const std::string& text) {
-  tools::JsonWriter json;
-  std::string out = json.value(text).finish();
-  out.pop_back();
-  return out;
-}
-
 // A folder is meant wherever the next run begins.
 std::string place_text(const FleetMember& member) {
-  if (is_at_agent(member)) return "agent = " + toml_text(member.place);
-  if (!is_at_folder(member)) return "host = " + toml_text(member.place);
+  if (is_at_agent(member)) return "agent = " + tools::toml_quoted(member.place);
+  if (!is_at_folder(member)) return "host = " + tools::toml_quoted(member.place);
   std::error_code error;
   const std::filesystem::path whole = std::filesystem::absolute(member.place, error);
-  return "dir = " + toml_text(error ? member.place : whole.string());
+  return "dir = " + tools::toml_quoted(error ? member.place : whole.string());
 }
 
 }  // namespace
@@ -88,9 +80,8 @@ void FleetLeft::write() {
   std::string text = base::joined({"# ", verb_, " ", base::to_hex(digest_), "\n", broker_});
   size_t number = 0;
   for (const FleetMember& member : left_) {
-    text +=
-        base::joined({"[controllers.", std::to_string(++number),
-                      "]\nname = ", toml_text(member.name), "\n", place_text(member), "\n"});
+    text += base::joined({"[controllers.", std::to_string(++number), "]\nname = ",
+                          tools::toml_quoted(member.name), "\n", place_text(member), "\n"});
     if (member.allow_loss) text += "allow_loss = true\n";
   }
   base::Status written = tools::write_file(

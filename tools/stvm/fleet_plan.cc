@@ -19,25 +19,11 @@ constexpr std::array<std::string_view, 13> kStateNames = {
 constexpr std::array<std::string_view, 6> kPhaseNames = {"running", "undoing",  "done",
                                                          "failed",  "aborting", "aborted"};
 
-// A text of TOML. Blanks take the place of what it has no escape for.
-std::string plan_quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n' || c == '\t') {
-      out += c == '\n' ? "\\n" : "\\t";
-    } else {
-      out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return out + "\"";
-}
-
 // Writes lines of a table.
 class PlanWriter {
  public:
   void table(const std::string& name) { text_ += base::joined({"\n[", name, "]\n"}); }
-  void text(const char* key, const std::string& value) { line(key, plan_quoted(value)); }
+  void text(const char* key, const std::string& value) { line(key, tools::toml_quoted(value)); }
   void name(const char* key, std::string_view value) { text(key, std::string(value)); }
   void number(const char* key, int64_t value) { line(key, std::to_string(value)); }
   void flag(const char* key, bool value) { line(key, value ? "true" : "false"); }

@@ -78,6 +78,8 @@ class Connections {
   const Connection& operator[](size_t i) const { return *rows_[i]; }
   // False, and it is left where it is: there is no place for it.
   bool add(Connection& connection, Instant now);
+  // Ends one, so that another one can come. False: none of them has to go.
+  bool make_room(bool bridged, Instant now);
   // Serves each by what poll() said of it, in this order, and ends those that have not kept to
   // these times. `now` is when poll() returned, for all: no peer pays for the time that an answer
   // takes. False as soon as `ending` is set.
@@ -89,7 +91,6 @@ class Connections {
   void clear();
 
  private:
-  bool make_room(bool bridged, Instant now);
   size_t longest_idle(bool bridged, Instant now) const;
   size_t newest_looker(Instant now) const;
 

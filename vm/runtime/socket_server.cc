@@ -110,14 +110,17 @@ Descriptor SocketServer::accept_peer(bool& bridged) {
   return Descriptor(fd);
 }
 
+// Without a descriptor for it, a newcomer gets the one in reserve; while somebody has that, the
+// place of a connection as if all places were taken.
 void SocketServer::take_connection(Connections& connections) {
+  const Instant now = std::chrono::steady_clock::now();
   Connection next;
   next.socket = accept_peer(next.bridged);
-  if (!next.socket.valid() && (errno == EMFILE || errno == ENFILE) && reserve_.valid()) {
+  if (!next.socket.valid() && (errno == EMFILE || errno == ENFILE)) {
+    const bool free = reserve_.valid() || connections.make_room(false, now);
     { const Descriptor given_up = std::move(reserve_); }
-    next.socket = accept_peer(next.bridged);
+    if (free) next.socket = accept_peer(next.bridged);
   }
-  const Instant now = std::chrono::steady_clock::now();
   if (!next.socket.valid()) {
     listen_again_ = now + kAfterFailure;
     return;

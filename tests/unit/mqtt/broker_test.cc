@@ -2,6 +2,11 @@
 #include "adapters/mqtt/broker.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "tests/unit/mqtt/false_broker.h"
 
@@ -118,6 +123,34 @@ TEST_F(Brokers, F03_BytesThatTheBrokerDoesNotTakeAreBounded) {
   EXPECT_TRUE(broker_->publish("file", largest, true).ok());
   EXPECT_FALSE(broker_->publish("file", base::Bytes(1, 5), true).ok());
   false_.acknowledge(second.number);
+}
+
+// A private key too, which is looked at before anything is sent.
+TEST(BrokerSecrets, F03_WhatEverybodyCanReadIsNoSecret) {
+  const std::string path = testing::TempDir() + "broker-secret-" + std::to_string(::getpid());
+  std::ofstream(path) << "word\n";
+  mqtt::Settings settings;
+  settings.url = "mqtt://127.0.0.1:1";
+  settings.client = "line1";
+  settings.user = "line1";
+  settings.password_file = path;
+  mqtt::Settings tls;
+  tls.url = "mqtts://127.0.0.1:1";
+  tls.client = "line1";
+  tls.certificate = tls.key = path;
+  for (const mqtt::Settings& asked : {settings, tls}) {
+    for (const mode_t mode : {0644, 0602}) {
+      ASSERT_EQ(::chmod(path.c_str(), mode), 0);
+      const auto broker = mqtt::connect(asked);
+      ASSERT_FALSE(broker.ok());
+      EXPECT_EQ(broker.error().refusal, base::Refusal::kBadKeys);
+      EXPECT_NE(broker.error().text.find("chmod 640"), std::string::npos);
+    }
+    ASSERT_EQ(::chmod(path.c_str(), 0640), 0);
+    const auto broker = mqtt::connect(asked);
+    EXPECT_TRUE(broker.ok() || broker.error().refusal != base::Refusal::kBadKeys);
+  }
+  std::filesystem::remove(path);
 }
 
 }  // namespace

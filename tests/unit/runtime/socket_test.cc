@@ -167,8 +167,9 @@ TEST_F(SocketTest, BridgesLeaveAPlace) {
   EXPECT_TRUE(is_served(directory_));
 }
 
-// Without a descriptor for it, a peer is served all the same, and a second one waits without being
-// asked for again and again.
+// Without a descriptor for it, a peer is served all the same. A second one waits without being asked
+// for again and again, until the first one is idle: it then gets that one's place, though there is no
+// descriptor yet.
 TEST_F(SocketTest, DescriptorsThatRunOutAreNoBusyLoop) {
   Descriptor first(::socket(AF_UNIX, SOCK_STREAM, 0));
   Descriptor second(::socket(AF_UNIX, SOCK_STREAM, 0));
@@ -195,15 +196,16 @@ TEST_F(SocketTest, DescriptorsThatRunOutAreNoBusyLoop) {
   const uint64_t accepts = server_->accepts();
   constexpr int kRounds = 2000;  // each wakes the server, which sees that the second one waits
   for (int i = 0; i < kRounds; ++i) {
-    ASSERT_TRUE(client->exchange(encode(Request{.command = Command::kStatus})).ok());
+    ASSERT_TRUE(client->exchange(encode(Request{.command = Command::kUpload, .data = {1}})).ok());
   }
   const auto elapsed = std::chrono::steady_clock::now() - begin;
   const auto tries = static_cast<uint64_t>(elapsed / std::chrono::milliseconds(100));
   EXPECT_LE(server_->accepts() - accepts, 4 + tries);
-  all.clear();
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   auto waiting = SocketClient::over(std::move(second), "here");
   EXPECT_TRUE(waiting->exchange(encode(Request{.command = Command::kStatus})).ok());
+  EXPECT_FALSE(::dup(STDOUT_FILENO) >= 0) << "there was a descriptor";
+  all.clear();
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
 // A client that was idle for too long finds its controller again, but not in the middle of a
