@@ -15,7 +15,9 @@ enum Family : uint32_t {
   kTcpServer = 16,
   kRtuServer = 32,
   kModbus = kTcp | kRtu | kTcpServer | kRtuServer,
-  kEvery = kSimulation | kMemory | kModbus,
+  kServers = kTcpServer | kRtuServer,
+  kAsking = kSimulation | kMemory | kTcp | kRtu,
+  kEvery = kAsking | kServers,
 };
 
 bool parse_number(std::string_view text, int64_t& value) {

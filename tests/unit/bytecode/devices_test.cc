@@ -48,6 +48,15 @@ TEST(Devices, SurviveEncoding) {
   EXPECT_EQ(number_setting(device, "timeout_ms"), 200);
 }
 
+// Whoever asks a server may take a second for all of its devices.
+TEST(Devices, AServerWaitsLongerThanAClient) {
+  for (const char* const driver : {"modbus-tcp-server", "modbus-rtu-server"}) {
+    Device device = simulated({});
+    device.driver = driver;
+    EXPECT_EQ(number_setting(device, "timeout_ms"), 2000);
+  }
+}
+
 TEST(Devices, V14_RangesOutsideTheProcessImageAreRefused) {
   EXPECT_TRUE(verified({simulated({input(0, 16, 0)})}).ok());
   expect_refused({simulated({input(0, 17, 0)})}, "ends at byte 17 of 16");
