@@ -1,6 +1,7 @@
 // Finding variables by path.
 #include "ir/bytecode/symbols.h"
 
+#include "base/joined.h"
 #include "ir/bytecode/name_index.h"
 #include "ir/bytecode/symbol_steps.h"
 #include "ir/types/inside.h"
@@ -125,7 +126,18 @@ class PathReader {
       at_ = listed.size();
       return step_to(symbol, listed, "");
     }
-    return step_to(symbol, text, "is neither a program nor a global variable");
+    return step_to(symbol, text, "is neither a program nor a global variable" + without_list());
+  }
+
+  // `GVL.level` of a list whose variables are visible without it: no image names such a list.
+  std::string without_list() const {
+    if (at_ >= path_.size() || path_[at_] != '.') return {};
+    const std::string_view rest = path_.substr(at_ + 1);
+    const std::string_view first = rest.substr(0, rest.find_first_of(".["));
+    if (names_.find_member(image_.globals, first) < 0) return {};
+    return base::joined(
+        {"; a list is part of a name only by {attribute 'qualified_only'}: the variable is `", rest,
+         "`"});
   }
 
   // A global `name` with a member `next`. A program that others call is among the globals too.

@@ -112,6 +112,8 @@ said 'run: --tier is auto, native or interp, not `nativ`; did you mean `native`\
 run() { stvm run good.img --virtual-time --scans 1 "$@"; }
 expect 7 run --print Mian.counter
 said '`Mian` is neither a program nor a global variable; did you mean `Main`\?'
+expect 7 run --print Gvl.speed
+said '`Gvl` is neither .*: the variable is `speed`$'
 expect 7 run --print sped
 said 'did you mean `speed`\?'
 expect 7 run --print Main.conuter
