@@ -118,11 +118,9 @@ void Chart::collect() {
 void Chart::add_condition_element(Node node) {
   const bool reads = xml::is(node, "contact") || xml::is(node, "inVariable") ||
                      xml::is(node, "leftPowerRail") || xml::is(node, "connector") ||
-                     xml::is(node, "continuation") ||
-                     (xml::is(node, "block") && xml::attribute(node, "instanceName").empty());
-  if (!reads || !drawing_.add(node)) {
-    report_in_chart(node, report_);
-  }
+                     xml::is(node, "continuation") || xml::is(node, "block");
+  if (!reads || !drawing_.add(node)) return report_in_chart(node, report_);
+  if (!xml::trimmed(xml::attribute(node, "instanceName")).empty()) boxes_.push_back(node);
 }
 
 // Points at which an element hangs: several of divergences and convergences.
@@ -171,7 +169,7 @@ void Chart::add_actions(Node block) {
       }
     } else if (inside) {
       action.name = actions_.take(step.name + "_action");
-      made_actions.insert(base::fold_name(action.name));
+      made_members.insert(base::fold_name(action.name));
       action.body =
           "ACTION " + action.name + ":\n" +
           xml::indented(language_text(inside, pou_, "action " + action.name, report_), kIndent) +
@@ -314,7 +312,8 @@ std::string Chart::text() {
     for (const ChartAction& action : element.actions) actions += action.body;
   }
   for (const ChartElement* element : transitions()) conditions += transition_text(*element);
-  return comments_ + steps + conditions + actions;
+  report_idle_boxes();
+  return comments_ + steps + conditions + actions + methods_;
 }
 
 std::string chart_text(Node sfc, Node pou, Reporter& report) {
@@ -325,7 +324,7 @@ std::string chart_text(Node sfc, Node pou, Reporter& report) {
   }
   Chart chart(sfc, pou, report);
   const std::string text = chart.text();
-  keep_chart(sfc, pou, text, std::move(chart.made_actions), report);
+  keep_chart(sfc, pou, text, std::move(chart.made_members), report);
   return text;
 }
 

@@ -12,10 +12,70 @@ std::string Chart::priority(Node transition) {
   return {};
 }
 
-std::string Chart::plain_condition(const ChartElement& transition) {
+// What an expression cannot say is a method of the POU, so the drawing stays one.
+std::string Chart::method_call(const std::string& name, const std::string& body) {
+  if (body.empty()) return error_text("a condition was not imported");
+  made_members.insert(base::fold_name(name));
+  methods_ +=
+      "METHOD PRIVATE " + name + " : BOOL\n" + xml::indented(body, kIndent) + "END_METHOD\n";
+  return " := " + name + "();\n";
+}
+
+std::string Chart::body_condition(Node body, const std::string& name, const std::string& step) {
+  for (Node node : xml::children(body)) {
+    const bool drawn = xml::is(node, "LD") || xml::is(node, "FBD");
+    if (!drawn || !is_more_than_expression(node)) continue;
+    std::string& call = calls_[node.internal_object()];
+    if (!call.empty()) return call;  // several transitions have it
+    const std::string method =
+        actions_.take(name.empty() ? step + "_condition" : xml::as_name(name));
+    return call = method_call(method, condition_body(node, name, method, report_));
+  }
+  return condition_text(body, name, report_);
+}
+
+// A box that two conditions have would be called by both of them. False after a report.
+bool Chart::take_boxes(const Drawing& part) {
+  bool good = true;
+  for (uint32_t i = 0; i < part.elements().elements.size(); ++i) {
+    const network::Element& element = part.elements().elements[i];
+    const Node node = part.place_of(i);
+    if (element.kind != network::Kind::kBlock || element.operand.empty() || !node) continue;
+    if (taken_boxes_.insert(node.internal_object()).second) continue;
+    report_.add(Code::kXmlBody, node,
+                xml::shown(node) + " leads to several transitions, and each would call `" +
+                    element.operand.text + "`",
+                "call it in an action, and make its outputs the conditions");
+    good = false;
+  }
+  return good;
+}
+
+void Chart::report_idle_boxes() {
+  for (Node node : boxes_) {
+    if (taken_boxes_.count(node.internal_object()) == 0) report_in_chart(node, report_);
+  }
+}
+
+std::string Chart::linked_condition(Node point, Node transition, const std::string& step) {
+  const std::vector<network::Link> links = drawing_.links_of(point);
+  if (drawing_.failed()) return error_text("a condition was not imported");
+  Drawing part = drawing_.part(links, {});
+  if (links.empty() || !is_more_than_expression(part.elements())) {
+    std::string out = links_text(drawing_.elements(), links, transition, report_);
+    return out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
+  }
+  if (!take_boxes(part)) return error_text("a condition was not imported");
+  const std::string method = actions_.take(step + "_condition");
+  part.redirect(static_cast<uint32_t>(part.elements().elements.size() - 1), method);
+  const std::string body = drawing_text(part, transition, method, {}, report_);
+  return method_call(method, part.failed() ? std::string() : body);
+}
+
+std::string Chart::plain_condition(const ChartElement& transition, const std::string& step) {
   Node condition = xml::child(transition.node, "condition");
   if (Node inside = xml::child(condition, "inline")) {
-    return condition_text(inside, std::string(xml::attribute(inside, "name")), report_);
+    return body_condition(inside, std::string(xml::attribute(inside, "name")), step);
   }
   if (Node reference = xml::child(condition, "reference")) {
     const std::string name(report_.required(reference, "name"));
@@ -26,23 +86,18 @@ std::string Chart::plain_condition(const ChartElement& transition) {
       return error_text("a condition was not imported");
     }
     return named != transitions_.end()
-               ? condition_text(xml::child(named->second, "body"), name, report_)
+               ? body_condition(xml::child(named->second, "body"), name, step)
                : " := " + name + ";\n";
   }
   Node point = xml::child(condition, "connectionPointIn");
   if (xml::child(condition, "connection")) point = condition;  // TC6 1.0
-  if (point) {
-    std::vector<network::Link> links = drawing_.links_of(point);
-    std::string out =
-        drawing_.failed() ? "" : links_text(drawing_.elements(), links, transition.node, report_);
-    return out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
-  }
+  if (point) return linked_condition(point, transition.node, step);
   report_.add(Code::kXmlBody, transition.node, "a transition has no condition");
   return error_text("a transition has no condition");
 }
 
-std::string Chart::condition(const ChartElement& transition) {
-  const std::string out = plain_condition(transition);
+std::string Chart::condition(const ChartElement& transition, const std::string& step) {
+  const std::string out = plain_condition(transition, step);
   if (!is_negated(xml::child(transition.node, "condition"), report_)) return out;
   if (out.starts_with(" := ")) return " := NOT (" + out.substr(4, out.size() - 6) + ");\n";
   if (!out.starts_with(":")) return out;  // an error already
@@ -54,7 +109,7 @@ std::string Chart::condition(const ChartElement& transition) {
 // Steps may have to stay for a time, whatever the condition says.
 std::string Chart::late_condition(const ChartElement& transition,
                                   const std::vector<std::string>& from) {
-  std::string out = condition(transition);
+  std::string out = condition(transition, from.front());
   if (chart_attributes(transition.node, &report_).is_true(xml::ChartAttribute::kExclude)) {
     report_.add(Code::kXmlBody, transition.node,
                 "a transition that is excluded from the build does not come in",

@@ -38,7 +38,8 @@ class Chart {
   Chart(Node sfc, Node pou, Reporter& report)
       : sfc_(sfc), pou_(pou), report_(report), drawing_(true, report) {}
   std::string text();
-  std::set<std::string> made_actions;  // names of those that stand in steps, folded
+  // Names, folded, of actions that stand in steps, and of methods that conditions call.
+  std::set<std::string> made_members;
 
  private:
   void collect();
@@ -55,9 +56,14 @@ class Chart {
   std::vector<const ChartElement*> transitions() const;  // as they are asked
   std::string step_text(const ChartElement& step);
   std::string transition_text(const ChartElement& transition);
-  std::string condition(const ChartElement& transition);
+  std::string condition(const ChartElement& transition, const std::string& step);
   std::string late_condition(const ChartElement& transition, const std::vector<std::string>& from);
-  std::string plain_condition(const ChartElement& transition);
+  std::string plain_condition(const ChartElement& transition, const std::string& step);
+  std::string body_condition(Node body, const std::string& name, const std::string& step);
+  std::string linked_condition(Node point, Node transition, const std::string& step);
+  std::string method_call(const std::string& name, const std::string& body);
+  bool take_boxes(const Drawing& part);
+  void report_idle_boxes();
   std::string priority(Node transition);
 
   Node sfc_;
@@ -66,7 +72,11 @@ class Chart {
   Drawing drawing_;                     // conditions
   std::vector<ChartElement> elements_;  // in the order of the drawing
   std::map<uint64_t, size_t> by_id_;
-  std::map<std::string, Node> transitions_;  // that have names, folded
+  std::map<std::string, Node> transitions_;   // that have names, folded
+  std::map<const void*, std::string> calls_;  // of methods for bodies of those
+  std::string methods_;
+  std::vector<Node> boxes_;            // of function blocks, for conditions
+  std::set<const void*> taken_boxes_;  // those that a condition has
   std::string comments_;
   xml::Names steps_;
   std::map<std::string, std::string> renamed_;      // steps, by their folded names in XML

@@ -28,7 +28,19 @@ class Drawing {
   // effect are left out with a warning.
   network::Body body();
 
+  // Only what leads to `links`, which a coil or variable `end` takes. For text, after connect().
+  Drawing part(const std::vector<network::Link>& links, const std::string& end) const;
+  // Another place takes what comes to a coil or variable.
+  void redirect(uint32_t element, const std::string& place) {
+    all_.elements[element].operand.text = place;
+  }
+
   const network::Network& elements() const { return all_; }
+  // Where an element stands in the document; empty: nowhere.
+  Node place_of(uint32_t element) const {
+    auto found = nodes_.find(element);
+    return found == nodes_.end() ? Node() : found->second;
+  }
   bool failed() const { return failed_; }
 
  private:
@@ -135,11 +147,26 @@ uint64_t id_of(std::string_view text);
 // --- diagram.cc
 // A body in LADDER or FBD as text.
 std::string diagram_text(Node body, const std::string& name, Reporter& report);
+// The same of a drawing that is read. `member`: of the POU, whose body it is; `elements`: what an
+// export writes for it; empty: those of the model.
+std::string drawing_text(Drawing& drawing, Node at, const std::string& member, std::string elements,
+                         Reporter& report);
+// False, after a report: not all of it is understood.
+bool add_all(Node body, Drawing& drawing, const std::string& name, Reporter& report);
+
+// --- diagram_condition.cc
 // What arrives at `name`, in a body that ends in that coil or variable, as an expression.
 std::string diagram_condition(Node body, const std::string& name, Reporter& report);
 // The condition that links of a chart lead to; empty after a report when they are none.
 std::string links_text(const network::Network& all, const std::vector<network::Link>& links,
                        Node at, Reporter& report);
+// Is it more than an expression: does it call function blocks, see edges, write, jump?
+bool is_more_than_expression(Node body);
+bool is_more_than_expression(const network::Network& all);
+// Then it is the body of a method `method`: what arrives at `name` is its result. Empty after a
+// report when that cannot be.
+std::string condition_body(Node body, const std::string& name, const std::string& method,
+                           Reporter& report);
 // An element in a chart that no condition is made of: what to do with it.
 void report_in_chart(Node node, Reporter& report);
 

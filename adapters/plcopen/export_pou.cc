@@ -143,9 +143,12 @@ void Writer::put_access(Node interface, frontend::Access access) {
 
 void Writer::members(Node owner, const Pou& pou) {
   const std::string path(pou.name.text);
+  const xml::KeptChart* kept = kept_chart(pou);
   for (size_t i = 0; i < pou.members.size(); ++i) {
     const Pou& member = pou.members[i];
     const std::string name(member.name.text);
+    // The chart as it was drawn has it in a condition.
+    if (kept != nullptr && kept->members.count(base::fold_name(name)) != 0) continue;
     if (member.kind == PouKind::kMethod) {
       Node node = data(owner, "method").append_child("Method");
       node.append_attribute("name") = name.c_str();
@@ -217,7 +220,7 @@ void Writer::pou(Node parent, const Pou& pou) {
   const xml::KeptChart* kept = kept_chart(pou);
   if (pou.chart != frontend::kNoChart) {
     for (const frontend::ChartAction& action : tree_.charts[pou.chart].actions) {
-      if (kept != nullptr && kept->actions.count(base::fold_name(action.name.text)) != 0) continue;
+      if (kept != nullptr && kept->members.count(base::fold_name(action.name.text)) != 0) continue;
       add_action(action.name, action.span, pieces(action.span, action.name.span.end).body,
                  action.body, action.diagram, action.attributes);
     }

@@ -56,14 +56,14 @@ std::string plain_xml(Node node) {
   return text.str();
 }
 
-void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> actions,
+void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> members,
                 Reporter& report) {
   if (!xml::is(pou, "pou") || xml::children(pou, "body").size() != 1) return;
   xml::KeptChart& kept = report.out().kept.charts[base::fold_name(report.pou())];
   kept.chart = plain_xml(sfc);
   if (Node named = xml::child(pou, "transitions")) kept.transitions = plain_xml(named);
   kept.text = text;
-  kept.actions = std::move(actions);
+  kept.members = std::move(members);
 }
 
 const xml::KeptChart* Writer::kept_chart(const Pou& pou) const {

@@ -98,8 +98,8 @@ bool is_chart_data(Node data);
 // --- kept.cc
 // `node` with everything in it as text that needs no declarations around it.
 std::string plain_xml(Node node);
-// For an export: `text` was made of it, with `actions` that stand in steps.
-void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> actions,
+// For an export: `text` was made of it, with `members` that stand in steps and conditions.
+void keep_chart(Node sfc, Node pou, const std::string& text, std::set<std::string> members,
                 Reporter& report);
 
 // --- configuration.cc

@@ -42,10 +42,11 @@ struct KeptDrawing {
 
 // A chart as it was drawn: elements without prefixes.
 struct KeptChart {
-  std::string chart;              // <SFC>
-  std::string transitions;        // <transitions> of its POU; may be empty
-  std::string text;               // what was made of it
-  std::set<std::string> actions;  // that stood in steps, by the names that they got, folded
+  std::string chart;        // <SFC>
+  std::string transitions;  // <transitions> of its POU; may be empty
+  std::string text;         // what was made of it
+  // Actions that stood in steps and methods of conditions, by the names that they got, folded.
+  std::set<std::string> members;
 };
 
 // What an export of the same writes again as it was.

@@ -290,28 +290,33 @@ reaches_b 0
 chart "<transition name=\"Go\"><body><LD>$rail$(contact 2 "$(from 1)")<coil localId=\"4\"><connectionPointIn>$(from 2)</connectionPointIn><variable>Go</variable></coil></LD></body></transition>" '<reference name="Go"/>' ''
 reaches_b 7
 chart '' "$wire" "$(contact 11 "$(from 12)" 'edge="rising"')<leftPowerRail localId=\"12\"/>"
-expect 1 stc check small.xml
-said 'E1083.*sees an edge, which needs a memory'
+reaches_b 7
 chart '' "$wire" '<block localId="11" typeName="NOT"><outputVariables><variable formalParameter="OUT" storage="set"/></outputVariables></block>'
 expect 1 stc check small.xml
 said 'E1083.*an output that sets or resets is no condition'
 for network in "<inVariable localId=\"1\" edge=\"rising\"><expression>b</expression></inVariable>$(out_variable 2 Go "$(from 1)")" \
-  "$(in_variable 1 b)<outVariable localId=\"2\" edge=\"falling\"><connectionPointIn>$(from 1)</connectionPointIn><expression>Go</expression></outVariable>"; do
+  "$(in_variable 1 b)<outVariable localId=\"2\" edge=\"rising\"><connectionPointIn>$(from 1)</connectionPointIn><expression>Go</expression></outVariable>"; do
   chart "<transition name=\"Go\"><body><FBD>$network</FBD></body></transition>" '<reference name="Go"/>' ''
-  expect 1 stc check small.xml
-  said 'E1083.*the condition sees an edge'
-  said 'help: compute it in an action, and make a variable the condition'
+  reaches_b 7
 done
-chart '' "$wire" '<block localId="11" typeName="TON" instanceName="t"/>'
+# What a condition cannot be (what it can: cli/import_chart_conditions).
+for storage in set reset; do
+  chart "<transition name=\"Go\"><body><FBD>$(in_variable 1 b)<outVariable localId=\"2\" storage=\"$storage\"><connectionPointIn>$(from 1)</connectionPointIn><expression>Go</expression></outVariable></FBD></body></transition>" '<reference name="Go"/>' ''
+  expect 1 stc check small.xml
+  said 'E1083.*sets or resets its own end, which keeps nothing'
+done
+chart '' "$wire" "$(in_variable 11 b)<block localId=\"12\" typeName=\"TON\" instanceName=\"t\"/>"
 expect 1 stc check small.xml
-said 'E1083.*calls `t`, and conditions of a chart only read'
-said 'help: call it in an action, and make its output the condition'
-chart "<transition name=\"Go\"><body><FBD><block localId=\"1\" typeName=\"TON\" instanceName=\"t\"><outputVariables><variable formalParameter=\"Q\"/></outputVariables></block>$(out_variable 2 Go '<connection refLocalId="1" formalParameter="Q"/>')</FBD></body></transition>" '<reference name="Go"/>' ''
+said 'E1083.*calls `t`, and leads to no condition of the chart'
+said 'help: connect it to a transition, or call it in an action'
+two() { chart "<transition name=\"Go\"><body><FBD>$(in_variable 1 b)$(out_variable 2 "$1" "$(from 1)")$(out_variable 3 "$2" "$(from 1)")</FBD></body></transition>" '<reference name="Go"/>' ''; }
+two b a
 expect 1 stc check small.xml
-said 'E1083.*the condition calls `t`, and conditions only read'
-chart "<transition name=\"Go\"><body><FBD>$(in_variable 1 b)$(out_variable 2 Go "$(from 1)")$(out_variable 3 b "$(from 1)")</FBD></body></transition>" '<reference name="Go"/>' ''
+said 'E1083.*the condition ends in 2 coils and variables, and none has the name of its transition'
+said 'help: let one coil or <outVariable> with the name of the transition take the condition'
+two Go Go
 expect 1 stc check small.xml
-said 'E1083.*the condition ends in 2 coils and variables instead of one'
+said 'E1083.*the condition ends in 2 coils and variables `Go` instead of one'
 body FBD '<block localId="1" typeName="EXECUTE"><inputVariables><variable formalParameter="EN"/></inputVariables><addData><data name="http://www.3s-software.com/plcopenxml/stcode" handleUnknown="implementation"><STCode>a := 1;</STCode></data></addData></block>'
 wrong E1083 'holds statements of its own'
 expect 1 stc check small.xml
