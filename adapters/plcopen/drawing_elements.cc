@@ -30,6 +30,17 @@ int32_t whole(double value) {
   return value >= -kMost && value <= kMost ? static_cast<int32_t>(value) : 0;
 }
 
+// What an export writes for several comments is several again.
+std::vector<std::string> paragraphs(std::string_view text) {
+  std::vector<std::string> out;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find("\n\n"), text.size());
+    if (end > 0) out.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(std::max(text.find_first_not_of('\n', end), end), text.size()));
+  }
+  return out;
+}
+
 // As text keeps a comment: blanks around its lines are layout.
 std::string remark_of(Node node) { return network::comment_text("(*" + xml::text_of(node) + "*)"); }
 
@@ -55,7 +66,7 @@ Element Drawing::made(Node node, Kind kind) {
     out.order = static_cast<uint32_t>(order - 1);
   }
   Node note = xml::child(node, "documentation");
-  if (note) out.comment = remark_of(note);
+  if (note) out.comments = paragraphs(remark_of(note));
   return out;
 }
 

@@ -77,6 +77,21 @@ std::vector<Comment> comments_of(std::string_view text) {
   return out;
 }
 
+// One comment, or several: blank lines part those of an element, and what cannot stand between the
+// marks of a comment is one for each line (network/element_text.h).
+void add_whole(std::string_view text, std::map<std::string, uint32_t>& out) {
+  const std::string all = words_of(text);
+  ++out[all];
+  for (const std::string_view border : {"\n\n", "\n"}) {
+    for (std::string_view rest = text; !rest.empty();) {
+      const size_t end = std::min(rest.find(border), rest.size());
+      std::string words = words_of(rest.substr(0, end));
+      if (!words.empty() && words != all) ++out[std::move(words)];
+      rest.remove_prefix(std::min(end + border.size(), rest.size()));
+    }
+  }
+}
+
 // How often each comment stands there.
 std::map<std::string, uint32_t> comments_in(Node root) {
   std::map<std::string, uint32_t> out;
@@ -93,7 +108,7 @@ std::map<std::string, uint32_t> comments_in(Node root) {
       whole = whole || xml::is(node, name);
     }
     if (whole) {
-      ++out[words_of(xml::text_of(node))];
+      add_whole(xml::text_of(node), out);
       continue;
     }
     for (Node child : node.children()) todo.push_back(child);

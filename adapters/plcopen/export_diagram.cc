@@ -328,7 +328,11 @@ void DiagramWriter::put_element(const network::Network& network, uint32_t number
   } else if (element.kind == Kind::kSource || element.kind == Kind::kSink) {
     put_operand(out, "expression", element.operand.text);
   }
-  writer_.put_documentation(out, element.comment);
+  std::string note;  // a blank line between two comments
+  for (const std::string& comment : element.comments) {
+    note += (note.empty() ? "" : "\n\n") + comment;
+  }
+  writer_.put_documentation(out, note);
 }
 
 void Writer::diagram(Node body, const network::Body& drawn, const std::string& path) {

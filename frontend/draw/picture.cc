@@ -53,7 +53,7 @@ double heading(Svg& svg, const network::Network& network, size_t number, double 
   };
   for (const std::string& text : network.comments) comment(text);
   for (const network::Element& element : network.elements) {
-    if (!element.comment.empty()) comment(element.comment);
+    for (const std::string& text : element.comments) comment(text);
   }
   return std::max(at, y + kLineHeight) + 4;
 }

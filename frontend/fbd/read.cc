@@ -114,22 +114,18 @@ class Reader {
       const bool same_line = text_.substr(from, at - from).find('\n') == std::string_view::npos;
       std::string comment = network::comment_text(text_.substr(at, end - at));
       if (same_line && last_row_ != kNoRow) {
-        add_comment(current().elements[last_row_].comment, comment);
+        current().elements[last_row_].comments.push_back(std::move(comment));
       } else {
         pending_.push_back(std::move(comment));
       }
       at = end;
     }
   }
-  static void add_comment(std::string& to, const std::string& comment) {
-    if (!to.empty()) to += '\n';
-    to += comment;
-  }
   // Gives what is pending to the row that was read, or to the network.
   void attach(bool row) {
     for (std::string& comment : pending_) {
       if (row && last_row_ != kNoRow) {
-        add_comment(current().elements[last_row_].comment, comment);
+        current().elements[last_row_].comments.push_back(std::move(comment));
       } else {
         current().comments.push_back(std::move(comment));
       }

@@ -81,7 +81,7 @@ struct Element {
   Text wire;  // of functions' blocks: what FBD as text calls the result; may be empty
   std::vector<Input> inputs;
   std::vector<Output> outputs;
-  std::string comment;
+  std::vector<std::string> comments;
   Position position;
   uint64_t id = 0;     // localId of XML; 0: none
   uint32_t order = 0;  // executionOrderId of XML; 0: none
@@ -94,10 +94,10 @@ inline bool is_rail(const Element& element) {
 
 // A rung, or what is drawn together.
 struct Network {
-  Text label;             // a jump may name it; empty: none
-  std::string title;      // one line
-  bool disabled = false;  // kept, but not executed: only its label counts
-  bool headed = false;    // FBD: it begins at a row {network ...} (network/head.h)
+  Text label;                         // a jump may name it; empty: none
+  std::string title;                  // one line
+  bool disabled = false;              // kept, but not executed: only its label counts
+  bool headed = false;                // FBD: it begins at a row {network ...} (network/head.h)
   std::vector<std::string> comments;  // in front of it, without comment marks; a line may be long
   std::vector<Element> elements;
   base::SourceSpan span;

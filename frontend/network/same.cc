@@ -53,7 +53,7 @@ class Printer {
         unknown_ = 0;
         written_.clear();
       }
-      for (const std::string& comment : headed.comments) comments_ += "// " + comment + '\n';
+      for (const std::string& comment : headed.comments) add_comment(comment);
       network_ = headed.network;
       if (network_ == nullptr) continue;
       text_.assign(network_->elements.size(), {});
@@ -63,6 +63,16 @@ class Printer {
   }
 
  private:
+  // By lines: one comment of several may stand in text as several (comment_rows()).
+  void add_comment(std::string_view comment) {
+    while (true) {
+      const size_t end = std::min(comment.find('\n'), comment.size());
+      comments_ += "// " + std::string(comment.substr(0, end)) + '\n';
+      if (end == comment.size()) return;
+      comment.remove_prefix(end + 1);
+    }
+  }
+
   void element(uint32_t i) {
     const Element& element = network_->elements[i];
     switch (element.kind) {
@@ -196,9 +206,7 @@ std::string Printer::link(Link link, bool& negated) const {
 
 }  // namespace
 
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<Headed> with_heads(const Body& body) {
   std::vector<Headed> out;
@@ -214,7 +222,7 @@ std::vector<Headed> with_heads(const Body& body) {
     }
     for (const std::string& comment : network.comments) next.comments.push_back(comment);
     for (const Element& element : network.elements) {
-      if (!element.comment.empty()) next.comments.push_back(element.comment);
+      next.comments.insert(next.comments.end(), element.comments.begin(), element.comments.end());
     }
     if (std::all_of(network.elements.begin(), network.elements.end(), is_rail)) continue;
     next.network = &network;

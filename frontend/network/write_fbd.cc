@@ -216,7 +216,7 @@ void Writer::keep(uint32_t i) {
 
 void Writer::element(uint32_t i) {
   const Element& element = network_->elements[i];
-  if (!element.comment.empty()) row(comment_rows(element.comment, indent_));
+  for (const std::string& comment : element.comments) row(comment_rows(comment, indent_));
   switch (element.kind) {
     case Kind::kLeftRail:
       terms_[i] = {{Modifier::kNone, "TRUE", true}};

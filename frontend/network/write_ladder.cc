@@ -64,7 +64,7 @@ bool is_wide(const Body& body) {
     }
     for (const Element& element : network.elements) {
       bool good = is_utf8(element.operand.text) && is_utf8(element.type.text) &&
-                  is_utf8(element.comment) && is_utf8(network.label.text);
+                  std::ranges::all_of(element.comments, is_utf8) && is_utf8(network.label.text);
       if (!good) return false;
     }
   }

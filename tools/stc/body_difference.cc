@@ -100,7 +100,7 @@ Rung rung_of(network::Network whole) {
   rung.text = network::write_ladder(body, 0).value_or(std::string());
   if (rung.text.empty()) rung.text = network::write_fbd(body, 0);
   body.networks[0].comments.clear();
-  for (network::Element& element : body.networks[0].elements) element.comment.clear();
+  for (network::Element& element : body.networks[0].elements) element.comments.clear();
   rung.program = network::canonical(body);
   return rung;
 }

@@ -84,7 +84,7 @@ std::vector<UnitPart> box_parts(const network::Network& whole, const std::string
   network::Network& only = body.networks[0];
   only.comments.clear();
   only.label = {};
-  for (network::Element& element : only.elements) element.comment.clear();
+  for (network::Element& element : only.elements) element.comments.clear();
   std::vector<UnitPart> out;
   const std::string text = network::write_fbd(body, 0);
   for (std::string_view rest = text; !rest.empty();) {

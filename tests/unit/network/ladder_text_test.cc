@@ -195,7 +195,7 @@ TEST(LadderText, AnOperandThatWouldReadAsSomethingElseIsRefused) {
 
 TEST(LadderText, ElementCommentsAreKept) {
   Body body = one_rung({element(Kind::kCoil, "x", {{0, 0}})});
-  body.networks[0].elements[1].comment = "motor";
+  body.networks[0].elements[1].comments = {"motor"};
   EXPECT_EQ(write_ladder(body, 2).value_or("").substr(0, 15), "  (* motor *)\n ");
 }
 
