@@ -248,7 +248,7 @@ std::string Chart::step_text(const ChartElement& step) {
   for (const ChartAction& action : step.actions) {
     out += kIndent + action_use(action.node, action.name, report_) + "\n";
   }
-  std::vector<std::string>& kept = report_.out().kept.data[base::fold_name(report_.pou())];
+  std::vector<std::string>& kept = report_.out().kept.data[place_of(step.node)];
   const size_t count = kept.size();
   vendor_data(step.node, report_);
   kept.resize(count);  // the kept chart has it

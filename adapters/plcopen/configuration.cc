@@ -313,6 +313,8 @@ void import(const xml::Document& document, xml::Imported& out) {
     import_project(converted.project.document_element(), report);
   } else {
     import_project(document.root(), report);
+    keep_headers(document.root(), out);
+    keep_object_ids(document.root(), out);
     if (xml::is(document.root(), "project")) report_misplaced(document.root(), report);
   }
   report.set_taker(nullptr);

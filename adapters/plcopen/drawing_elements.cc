@@ -99,7 +99,7 @@ void Drawing::report_inside(Node node) {
         fail(Code::kXmlBody, data, xml::shown(node) + " holds statements of its own",
              "make them an ACTION, a function or a function block, and call that here");
       } else {
-        std::vector<std::string>& kept = report_.out().kept.data[base::fold_name(report_.pou())];
+        std::vector<std::string>& kept = report_.out().kept.data[plcopen::place_of(node)];
         const size_t count = kept.size();
         report_data(data, report_);
         if (report_.origin(node) == node) kept.resize(count);  // the kept drawing has it

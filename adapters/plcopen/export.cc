@@ -150,7 +150,7 @@ void Writer::project(Node project) {
     tag(node, each.span.begin);
     put_documentation(node, comment_before(each.span.begin));
   }
-  put_kept(project, {});
+  put_kept(project);
   if (parts_) parts_->put(project);
 }
 
@@ -159,24 +159,6 @@ namespace {
 const char* name_space(Edition form) {
   return form == Edition::kTc6v200 ? "http://www.plcopen.org/xml/tc6_0200"
                                    : "http://www.plcopen.org/xml/tc6_0201";
-}
-
-void put_headers(Node project, const std::string& name) {
-  // No clock: the same sources give the same document.
-  const char* when = "1970-01-01T00:00:00";
-  Node file = project.append_child("fileHeader");
-  file.append_attribute("companyName") = "";
-  file.append_attribute("productName") = "stc";
-  file.append_attribute("productVersion") = STC_VERSION;
-  file.append_attribute("creationDateTime") = when;
-  Node content = project.append_child("contentHeader");
-  content.append_attribute("name") = name.c_str();
-  Node coordinates = content.append_child("coordinateInfo");
-  for (const char* language : {"fbd", "ld", "sfc"}) {
-    Node scaling = coordinates.append_child(language).append_child("scaling");
-    scaling.append_attribute("x") = "1";
-    scaling.append_attribute("y") = "1";
-  }
 }
 
 // The lists of pins, of which drawings that others wrote leave out empty ones.
@@ -273,7 +255,7 @@ std::optional<std::string> export_document(const ExportInput& input,
   if (input.form != Edition::kIec10) {
     project.append_attribute("xmlns:xhtml") = kXhtml;
   }
-  put_headers(project, input.name);
+  put_headers(project, input);
   const uint32_t before = diagnostics.error_count();
   Writer writer(input, diagnostics);
   writer.project(project);

@@ -17,6 +17,8 @@ namespace plcopen {
 
 enum class Edition : uint8_t { kTc6v200, kTc6v201, kIec10 };
 std::optional<Edition> form_of_name(std::string_view name);  // tc6-2.0, tc6-2.01, 61131-10
+// That of the one document that was read, so that the tool that wrote it knows it again.
+Edition usual_form(const xml::Kept& kept);
 
 struct ExportInput {
   const base::SourceMap& sources;

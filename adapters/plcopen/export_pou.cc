@@ -105,15 +105,6 @@ std::string Writer::input_name(const std::string& function, uint32_t position) c
   return stdlib::parameter_at(function, position);
 }
 
-void Writer::put_kept(Node owner, const std::string& path) {
-  if (in_.kept == nullptr) return;
-  auto found = in_.kept->data.find(base::fold_name(path));
-  if (found == in_.kept->data.end()) return;
-  Node add = owner.child("addData");
-  if (!add) add = owner.append_child("addData");
-  for (const std::string& text : found->second) add.append_buffer(text.data(), text.size());
-}
-
 void Writer::put_body(Node body, const std::string& text, bool list, uint32_t drawn,
                       const std::string& path) {
   if (drawn != frontend::kNoDiagram) return diagram(body, tree_.diagrams[drawn], path);
@@ -231,7 +222,6 @@ void Writer::pou(Node parent, const Pou& pou) {
   }
   body(node, pou, name);
   members(node, pou);
-  put_kept(node, name);
   tag(node, pou.span.begin);
   put_documentation(node, comment_before(pou.span.begin));
 }

@@ -10,6 +10,10 @@ namespace plcopen {
 
 bool is_document(const xml::Document& document);
 void import(const xml::Document& document, xml::Imported& out);
+// The headers of a project, for an export; those of stc itself are written anew.
+void keep_headers(xml::Node project, xml::Imported& out);
+// The ids that editors give to objects below `node`, where they are attributes.
+void keep_object_ids(xml::Node node, xml::Imported& out);
 
 // addData of a block: what FBD as text calls the result of its function (WIRE name := ...).
 inline constexpr const char* kWireData = "stc-wire";

@@ -96,6 +96,11 @@ bool is_chart_of_codesys(Node pou);
 bool is_chart_data(Node data);
 
 // --- kept.cc
+// The declaration that `node` stands in, for what an export puts there again: the same for elements
+// that are read and for those that are written. Empty: the project.
+std::string place_of(Node node);
+// <data> of an editor goes out where it was, if that is a declaration itself.
+void keep_editor_data(Node data, Reporter& report);
 // `node` with everything in it as text that needs no declarations around it.
 std::string plain_xml(Node node);
 // For an export: `text` was made of it, with `members` that stand in steps and conditions.

@@ -1,7 +1,6 @@
 // What vendors keep in addData. Understood is what CODESYS and its kin write of objects: methods,
 // properties, inheritance, access, attributes, and declarations as text.
 #include <algorithm>
-#include <sstream>
 
 #include "adapters/plcopen/reader.h"
 #include "adapters/plcopen/source_text.h"
@@ -103,18 +102,16 @@ void report_data(Node data, Reporter& report) {
   const std::string name(xml::attribute(data, "name"));
   for (const char* known : kEditor) {
     if (!is_vendor(data, known)) continue;
+    keep_editor_data(data, report);
     return report.add(Code::kXmlLeftOut, data, "addData `" + name + "` is of the editor only");
   }
   if (xml::attribute(data, "handleUnknown") == "discard") {
+    keep_editor_data(data, report);
     return report.add(Code::kXmlLeftOut, data,
                       "addData `" + name + "` is not needed by others, as it says itself");
   }
   report.add(Code::kXmlNotUnderstood, data, "addData `" + name + "` is not understood");
-  // Prefixes of namespaces would be declared by nobody elsewhere.
-  if (std::string_view(data.name()).find(':') != std::string_view::npos) return;
-  std::ostringstream text;
-  data.print(text, "", pugi::format_raw, pugi::encoding_utf8);
-  report.out().kept.data[base::fold_name(report.pou())].push_back(text.str());
+  report.out().kept.data[place_of(data)].push_back(plain_xml(data));
 }
 
 Vendor vendor_data(Node owner, Reporter& report) {

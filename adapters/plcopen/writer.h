@@ -87,10 +87,10 @@ class Writer {
   void body(Node owner, const Pou& pou, const std::string& path);
   void put_body(Node body, const std::string& text, bool list, uint32_t diagram,
                 const std::string& path);
-  void put_kept(Node owner, const std::string& path);
 
   // --- kept.cc
   const xml::KeptChart* kept_chart(const Pou& pou) const;  // null: there is none
+  void put_kept(Node project);                             // data of others, in the whole document
 
   // --- export_chart.cc
   void chart(Node body, const frontend::Chart& chart);
@@ -117,6 +117,9 @@ class Writer {
   base::Diagnostics& diagnostics_;
   std::optional<SourceParts> parts_;
 };
+
+// --- headers.cc
+void put_headers(Node project, const ExportInput& input);
 
 // A note for each source of which comments are nowhere below `root`.
 void report_lost_comments(const ExportInput& input, Node root, base::Diagnostics& diagnostics);

@@ -49,11 +49,23 @@ struct KeptChart {
   std::set<std::string> members;
 };
 
+// <fileHeader> and <contentHeader> of a document, without prefixes and addData; either may be
+// empty.
+struct KeptHeader {
+  std::string file;
+  std::string content;
+  std::string space;  // the namespace of the document
+};
+
 // What an export of the same writes again as it was.
 struct Kept {
-  std::map<std::string, KeptChart> charts;               // by POU
-  std::map<std::string, KeptDrawing> drawings;           // by POU or POU.Member
-  std::map<std::string, std::vector<std::string>> data;  // <data> of nobody, by POU
+  std::vector<KeptHeader> headers;              // of each document
+  std::map<std::string, KeptChart> charts;      // by POU
+  std::map<std::string, KeptDrawing> drawings;  // by POU or POU.Member
+  // <data> that nobody understood, and that of editors, by where it stands (plcopen/kept.cc).
+  std::map<std::string, std::vector<std::string>> data;
+  std::map<std::string, std::vector<std::string>> editor_data;
+  std::map<std::string, std::string> object_ids;  // attributes ObjectId, likewise
   bool declares_xhtml = false;  // texts stand in <xhtml xmlns=...>, as CODESYS writes them
 };
 

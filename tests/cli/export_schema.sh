@@ -44,7 +44,7 @@ while read -r source; do
 done <sources
 for source in "$source_dir"/tests/fuzz/corpus/plcopen/*.xml "$source_dir"/tests/fuzz/corpus/twincat/*; do
   number=$((number + 1))
-  exported "$source" "$number"
+  exported "$source" "$number" --as tc6-2.01
 done
 [ "$written" -gt 1000 ] || fail "only $written documents"
 find documents -name '*.xml' -print0 | xargs -0 -n 200 xmllint --noout --schema "$schema" >lint 2>&1 || {

@@ -20,7 +20,8 @@ constexpr tools::OptionRow kExportOptions[] = {
     STC_SOURCE_OPTIONS,
     {"--output|-o", "FILE", "document to write (needed)"},
     {"--force", nullptr, "overwrite a file that is no XML"},
-    {"--as", "FORM", "tc6-2.01 (default), tc6-2.0 or 61131-10", "tc6-2.01|tc6-2.0|61131-10"},
+    {"--as", "FORM", "tc6-2.01 (default, but for documents in 2.0), tc6-2.0 or 61131-10",
+     "tc6-2.01|tc6-2.0|61131-10"},
     {"--without-sources", nullptr, "only what XML has elements for, not the text of the sources"},
 };
 constexpr tools::Command kExportCommand{
@@ -45,7 +46,8 @@ base::Status refuse_to_overwrite(const tools::Options& options, const Project& p
                      output + ": is there and no XML; nothing was written. --force overwrites"};
 }
 
-base::Status write_document(const tools::Options& options, plcopen::Edition form) {
+// No form: that of what was read.
+base::Status write_document(const tools::Options& options, std::optional<plcopen::Edition> form) {
   base::Result<base::DiagnosticFormat> format = diagnostic_format(options);
   if (!format.ok()) return format.error();
   base::Result<Project> project = open_project(options, options.arguments());
@@ -61,7 +63,7 @@ base::Status write_document(const tools::Options& options, plcopen::Edition form
   }
   if (!diagnostics.has_errors()) {
     plcopen::ExportInput input{project->sources, tree,
-                               project->name,    form,
+                               project->name,    form ? *form : plcopen::usual_form(project->kept),
                                &project->kept,   !options.has("--without-sources")};
     text = plcopen::export_document(input, diagnostics);
   }
@@ -74,13 +76,13 @@ base::Status write_document(const tools::Options& options, plcopen::Edition form
 }
 
 base::Status export_sources(const tools::Options& options) {
-  const std::string name = options.text("--as", "tc6-2.01");
+  const std::string name = options.text("--as");
   std::optional<plcopen::Edition> form = plcopen::form_of_name(name);
-  if (!form) {
+  if (!form && options.has("--as")) {
     return base::Error{base::Refusal::kUsage,
                        "unknown form `" + name + "`; known are tc6-2.01, tc6-2.0, 61131-10"};
   }
-  return write_document(options, *form);
+  return write_document(options, form);
 }
 
 #else

@@ -158,6 +158,9 @@ void Importer::take(const std::string& origin, xml::Imported& out) {
                   std::make_move_iterator(out.findings.end()));
   kept.drawings.merge(out.kept.drawings);
   kept.data.merge(out.kept.data);
+  kept.editor_data.merge(out.kept.editor_data);
+  kept.object_ids.merge(out.kept.object_ids);
+  kept.headers.insert(kept.headers.end(), out.kept.headers.begin(), out.kept.headers.end());
   kept.charts.merge(out.kept.charts);
   // A name is taken in all documents that are imported together.
   xml::Names names = std::move(out.names);

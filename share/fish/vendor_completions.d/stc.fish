@@ -143,7 +143,7 @@ complete -c stc -n '__fish_seen_subcommand_from export' -l warn -s W -x -d 'erro
 complete -c stc -n '__fish_seen_subcommand_from export' -l format -x -a 'text json sarif github' -d 'text (default), json, sarif or github'
 complete -c stc -n '__fish_seen_subcommand_from export' -l output -s o -r -F -d 'document to write (needed)'
 complete -c stc -n '__fish_seen_subcommand_from export' -l force -d 'overwrite a file that is no XML'
-complete -c stc -n '__fish_seen_subcommand_from export' -l as -x -a 'tc6-2.01 tc6-2.0 61131-10' -d 'tc6-2.01 (default), tc6-2.0 or 61131-10'
+complete -c stc -n '__fish_seen_subcommand_from export' -l as -x -a 'tc6-2.01 tc6-2.0 61131-10' -d 'tc6-2.01 (default, but for documents in 2.0), tc6-2.0 or 61131-10'
 complete -c stc -n '__fish_seen_subcommand_from export' -l without-sources -d 'only what XML has elements for, not the text of the sources'
 complete -c stc -n '__fish_seen_subcommand_from export' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stc -n '__fish_seen_subcommand_from export' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
