@@ -11,8 +11,6 @@
 namespace plcopen {
 namespace {
 
-constexpr size_t kMaxWays = 5'000'000;  // of all transitions together
-
 const char* const kBetween[] = {"selectionDivergence", "selectionConvergence",
                                 "simultaneousDivergence", "simultaneousConvergence"};
 
@@ -214,13 +212,8 @@ std::vector<std::string> Chart::steps_beside(const ChartElement& transition, boo
   followed_.clear();
   push_neighbours(transition, up, false, todo);
   while (!todo.empty()) {
-    if (++ways_ > kMaxWays) {
-      if (ways_ == kMaxWays + 1) {
-        report_.add(Code::kBadXmlChart, transition.node,
-                    "there are too many ways through divergences and convergences");
-      }
-      return {};
-    }
+    ++ways_;
+    if (is_too_much(transition.node)) return {};
     const Way way = todo.back();
     todo.pop_back();
     if (xml::is(way.to->node, "step")) {

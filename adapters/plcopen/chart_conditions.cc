@@ -57,15 +57,31 @@ void Chart::report_idle_boxes() {
   }
 }
 
+// Has following what is connected cost too much? After one report.
+bool Chart::is_too_much(Node transition) {
+  if (ways_ <= kMaxWays) return false;
+  if (!reported_) {
+    report_.add(Code::kBadXmlChart, transition,
+                "there are too many ways through divergences, convergences and conditions");
+  }
+  return reported_ = true;
+}
+
 std::string Chart::linked_condition(Node point, Node transition, const std::string& step) {
   const std::vector<network::Link> links = drawing_.links_of(point);
-  if (drawing_.failed()) return error_text("a condition was not imported");
-  Drawing part = drawing_.part(links, {});
+  if (drawing_.failed() || is_too_much(transition)) {
+    return error_text("a condition was not imported");
+  }
+  Drawing part = drawing_.part(links, {}, ways_);
   if (links.empty() || !is_more_than_expression(part.elements())) {
     std::string out = links_text(drawing_.elements(), links, transition, report_);
     return out.empty() ? error_text("a condition was not imported") : " := " + out + ";\n";
   }
-  if (!take_boxes(part)) return error_text("a condition was not imported");
+  // Each has a copy of what it shares with others.
+  ways_ += kWaysOfCopy * part.elements().elements.size();
+  if (is_too_much(transition) || !take_boxes(part)) {
+    return error_text("a condition was not imported");
+  }
   const std::string method = actions_.take(step + "_condition");
   part.redirect(static_cast<uint32_t>(part.elements().elements.size() - 1), method);
   const std::string body = drawing_text(part, transition, method, {}, report_);

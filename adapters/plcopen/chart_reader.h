@@ -60,6 +60,7 @@ class Chart {
   std::string late_condition(const ChartElement& transition, const std::vector<std::string>& from);
   std::string plain_condition(const ChartElement& transition, const std::string& step);
   std::string body_condition(Node body, const std::string& name, const std::string& step);
+  bool is_too_much(Node transition);
   std::string linked_condition(Node point, Node transition, const std::string& step);
   std::string method_call(const std::string& name, const std::string& body);
   bool take_boxes(const Drawing& part);
@@ -83,8 +84,11 @@ class Chart {
   xml::Names actions_;                              // and what else actions may not be called
   std::map<std::string, std::string> least_times_;  // by step
   bool prioritised_ = false;
-  size_t ways_ = 0;                         // that were followed
-  std::set<const ChartElement*> followed_;  // for one transition: each once, so loops end
+  static constexpr size_t kMaxWays = 5'000'000;  // of all transitions together
+  static constexpr size_t kWaysOfCopy = 20;      // that an element of a copied network counts for
+  size_t ways_ = 0;                              // that were followed
+  bool reported_ = false;                        // that they are too many
+  std::set<const ChartElement*> followed_;       // for one transition: each once, so loops end
 };
 
 }  // namespace plcopen

@@ -29,7 +29,8 @@ class Drawing {
   network::Body body();
 
   // Only what leads to `links`, which a coil or variable `end` takes. For text, after connect().
-  Drawing part(const std::vector<network::Link>& links, const std::string& end) const;
+  // `work` grows by what it cost.
+  Drawing part(const std::vector<network::Link>& links, const std::string& end, size_t& work) const;
   // Another place takes what comes to a coil or variable.
   void redirect(uint32_t element, const std::string& place) {
     all_.elements[element].operand.text = place;

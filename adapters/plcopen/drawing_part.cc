@@ -1,5 +1,6 @@
 // What leads to one condition of a chart, as a drawing of its own.
 #include <algorithm>
+#include <map>
 
 #include "adapters/plcopen/drawing.h"
 
@@ -9,15 +10,14 @@ using network::Element;
 using network::Kind;
 using network::Link;
 
-Drawing Drawing::part(const std::vector<Link>& links, const std::string& end) const {
-  std::vector<bool> used(all_.elements.size());
+Drawing Drawing::part(const std::vector<Link>& links, const std::string& end, size_t& work) const {
+  std::map<uint32_t, uint32_t> number;  // in the part, of what is used
   std::vector<uint32_t> open;
   bool ladder = false;  // else it is drawn as function blocks are
   const auto follow = [&](const std::vector<Link>& from) {
     ladder = ladder || from.size() > 1;
     for (Link link : from) {
-      if (!used[link.element]) open.push_back(link.element);
-      used[link.element] = true;
+      if (number.emplace(link.element, 0).second) open.push_back(link.element);
     }
   };
   follow(links);
@@ -27,9 +27,9 @@ Drawing Drawing::part(const std::vector<Link>& links, const std::string& end) co
     ladder = ladder || element.kind == Kind::kContact || element.kind == Kind::kLeftRail;
     for (const network::Input& input : element.inputs) follow(input.from);
   }
+  work += number.size() + precedences_.size();
   Drawing out(ladder, report_);
   out.failed_ = failed_;
-  std::vector<uint32_t> number(used.size(), kNone);
   Element last;
   last.kind = ladder ? Kind::kCoil : Kind::kSink;
   last.operand.text = end;
@@ -37,11 +37,10 @@ Drawing Drawing::part(const std::vector<Link>& links, const std::string& end) co
   last.inputs[0].from = links;
   if (ladder) last.outputs.resize(1);
   last.position.known = true;
-  for (uint32_t i = 0; i < used.size(); ++i) {
-    if (!used[i]) continue;
+  for (auto& [i, made] : number) {
     const Element& element = all_.elements[i];
-    number[i] = out.push(element);
-    if (const Node node = place_of(i)) out.nodes_.emplace(number[i], node);
+    made = out.push(element);
+    if (const Node node = place_of(i)) out.nodes_.emplace(made, node);
     const network::Position& at = element.position;
     last.position.known = last.position.known && at.known;
     last.position.x = std::max(last.position.x, at.x + std::max(at.width, 0) + 40);
@@ -54,8 +53,10 @@ Drawing Drawing::part(const std::vector<Link>& links, const std::string& end) co
     }
   }
   for (const network::Precedence& each : precedences_) {
-    if (number[each.first] == kNone || number[each.second] == kNone) continue;
-    out.precedences_.push_back({number[each.first], number[each.second]});
+    const auto first = number.find(each.first);
+    const auto second = number.find(each.second);
+    if (first == number.end() || second == number.end()) continue;
+    out.precedences_.push_back({first->second, second->second});
   }
   return out;
 }

@@ -71,6 +71,27 @@ expect 0 stc check twice
 sed 's/<condition negated="false">/<condition negated="true">/' "$sample" >negated.xml
 expect 0 stc import negated.xml -o negated
 grep -qF 'Look TO Own := NOT (Look_condition());' negated/Plant.st || fail "a negated condition"
+# A network that many transitions share is not copied without an end.
+python3 - <<'P' >many.xml
+count = 1000
+out = []
+def hang(at): return f'<connectionPointIn><connection refLocalId="{at}"/></connectionPointIn>'
+out.append('<leftPowerRail localId="1"/>')
+for i in range(count):
+    edge = ' edge="rising"' if i == 0 else ""
+    out.append(f'<contact localId="{i + 2}"{edge}>{hang(i + 1)}<variable>a</variable></contact>')
+for i in range(count):
+    at = 10000 + 2 * i
+    first = ' initialStep="true"' if i == 0 else ""
+    out.append(f'<step localId="{at}" name="S{i}"{first}>{hang(at - 1) if i else ""}</step>')
+    out.append(f'<transition localId="{at + 1}">{hang(at)}<condition>{hang(count + 1)}</condition></transition>')
+out.append(f'<jumpStep localId="9000" targetName="S0">{hang(10000 + 2 * count - 1)}</jumpStep>')
+print('<project><types><pous><pou name="P" pouType="program"><interface><localVars><variable name="a"><type><BOOL/>'
+      f'</type></variable></localVars></interface><body><SFC>{"".join(out)}</SFC></body></pou></pous></types></project>')
+P
+expect 1 timeout 60 "$bin/stc" import many.xml -o many
+said 'E1082.*there are too many ways through divergences, convergences and conditions'
+[ "$(grep -c E1082 err out | sed 's/.*://' | sort -n | tail -1)" = 1 ] || fail "said more than once"
 # A box that leads to two transitions would be called twice in a scan.
 sed 's/refLocalId="32" formalParameter="Q"/refLocalId="21" formalParameter="Q"/' "$sample" >shared.xml
 expect 1 stc check shared.xml
