@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "adapters/plcopen/expression_boxes.h"
 #include "adapters/plcopen/for_others.h"
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/layout.h"
@@ -352,8 +353,13 @@ void Writer::diagram(Node body, const network::Body& drawn, const std::string& p
       if (same) best = &kept;
     }
   }
+  network::Body others = for_others(*best);
+  if (const auto span = expressions_to_boxes(others)) {
+    fail(*span, "no box of a function says what this expression does with a wire");
+    return put_text(body, "ST", kTextOnlyBody);
+  }
   Node parent = body.append_child(best->language == network::Language::kLadder ? "LD" : "FBD");
-  if (DiagramWriter(*this, for_others(*best), parent).run()) return;
+  if (DiagramWriter(*this, others, parent).run()) return;
   body.remove_child(parent);
   put_text(body, "ST", kTextOnlyBody);
 }

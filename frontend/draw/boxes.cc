@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "frontend/draw/box_picture.h"
+#include "frontend/network/expressions.h"
 
 namespace frontend::draw {
 
@@ -211,7 +212,8 @@ double BoxPicture::place(uint32_t layer, double top) {
 
 double draw_boxes(Svg& svg, const network::Network& network, double y, const Look& look,
                   double rails) {
-  return BoxPicture(svg, network, look, rails).run(y);
+  const network::Network drawn = network::with_expression_boxes(network);
+  return BoxPicture(svg, drawn, look, rails).run(y);
 }
 
 }  // namespace frontend::draw

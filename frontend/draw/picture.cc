@@ -6,6 +6,7 @@
 #include "base/wrapped.h"
 #include "frontend/draw/pictures.h"
 #include "frontend/draw/shapes.h"
+#include "frontend/network/expressions.h"
 
 namespace frontend::draw {
 
@@ -75,7 +76,9 @@ std::vector<std::string> variables(const network::Body& body) {
           out.push_back(element.operand.text + '.' + output.name);
         }
       } else if (element.kind != network::Kind::kJump) {
-        for (std::string& path : variables_in(element.operand.text)) out.push_back(std::move(path));
+        const std::string text =
+            network::operand_with(element, [](const network::Input&) { return std::string("0"); });
+        for (std::string& path : variables_in(text)) out.push_back(std::move(path));
       }
     }
   }

@@ -1,7 +1,9 @@
 #include "frontend/fbd/links.h"
 
 #include <algorithm>
+#include <unordered_set>
 
+#include "frontend/network/expressions.h"
 #include "frontend/network/pins.h"
 #include "ir/types/types.h"
 
@@ -11,6 +13,7 @@ namespace {
 using Code = base::DiagnosticCode;
 using network::Cursor;
 using network::Element;
+using network::Input;
 using network::Kind;
 using network::Link;
 
@@ -86,6 +89,7 @@ void Links::finish(network::Network& network) {
     Found found = find(use, network);
     dropped[source] = found.link || found.reported;
     if (found.reported) continue;
+    elements[source].inputs = std::move(found.wires);
     std::vector<Link>& from = elements[use.element].inputs[use.input].from;
     from.push_back(found.link.value_or(Link{source, 0}));
   }
@@ -124,15 +128,15 @@ Links::Found Links::find(const Use& use, network::Network& network) {
     box = &found->second;
     behind = end;
   }
-  if (box == nullptr) return expression(use);
+  if (box == nullptr) return expression(use, network);
   std::string_view rest = without_blanks(whole.substr(behind));
   if (rest.empty()) return whole_box(use, *box);
-  if (rest[0] != '.') return expression(use);
+  if (rest[0] != '.') return expression(use, network);
   rest = without_blanks(rest.substr(1));
-  if (rest.empty() || !is_plain_name(rest)) return expression(use);
+  if (rest.empty() || !is_plain_name(rest)) return expression(use, network);
   const uint32_t element = box_for(use, *box);
   if (box->wire && element >= use.element) return feedback(use, *box);
-  return {Link{element, output_number(network, element, rest)}, false};
+  return {Link{element, output_number(network, element, rest)}, false, {}};
 }
 
 // Of an instance with several boxes the one that was there last, else the first one below.
@@ -145,33 +149,54 @@ Links::Found Links::whole_box(const Use& use, const Box& box) {
   if (!box.wire) return {};  // the instance itself, as an argument
   const uint32_t element = box_for(use, box);
   if (element >= use.element) return feedback(use, box);
-  return {Link{element, 0}, false};
+  return {Link{element, 0}, false, {}};
 }
 
 Links::Found Links::feedback(const Use& use, const Box& box) {
   diagnostics_.add(Code::kFeedback, use.operand.span,
                    "`" + box.name.text + "` is used above its box, and a wire keeps nothing",
                    "give it to a variable, and use that here");
-  return {{}, true};
+  return {{}, true, {}};
 }
 
-// Wires inside of an expression have no value that the expression could use.
-Links::Found Links::expression(const Use& use) {
-  base::Diagnostics unheard;
-  Cursor operand(use.operand.text, {0}, unheard);
-  bool member = false;
-  for (; !operand.at_end(); operand.take()) {
-    bool named = is_name(operand.kind()) && !member;
-    member = operand.kind() == TokenKind::kDot;
-    if (!named) continue;
-    auto found = boxes_.find(ir::fold_name(operand.text(operand.token())));
+// The wires in an expression. They are boxes of functions: what an instance is named by is a
+// variable, and stays one.
+Links::Found Links::expression(const Use& use, network::Network& network) {
+  const std::string_view text = use.operand.text;
+  Found out;
+  std::unordered_set<std::string> seen;
+  for (const network::FreeName& name : network::free_names(text)) {
+    const auto found = boxes_.find(ir::fold_name(text.substr(name.begin, name.end - name.begin)));
     if (found == boxes_.end() || !found->second.wire) continue;
-    diagnostics_.add(Code::kBoxInExpression, use.operand.span,
-                     "the wire `" + found->second.name.text + "` stands in an expression",
-                     "make a box of the expression: `WIRE name := F(...);`");
-    return {{}, true};
+    const Box& box = found->second;
+    const uint32_t element = box_for(use, box);
+    if (element >= use.element) return feedback(use, box);
+    const std::string_view member =
+        text.substr(name.member_begin, name.member_end - name.member_begin);
+    const bool enabled = ir::same_name(member, "ENO");
+    const size_t end = enabled ? name.member_end : name.end;
+    const std::string_view whole = text.substr(name.begin, end - name.begin);
+    if (!member.empty() && !enabled) {
+      return part_in_expression(use, text.substr(name.begin, name.member_end - name.begin));
+    }
+    if (!seen.insert(ir::fold_name(enabled ? found->first + ".ENO" : found->first)).second)
+      continue;
+    Input input;
+    input.name = enabled ? box.name.text + ".ENO" : std::string(whole);
+    input.from = {Link{element, enabled ? output_number(network, element, member) : 0}};
+    out.wires.push_back(std::move(input));
   }
-  return {};
+  return out;
+}
+
+// What a function gives beside its result has no type before its call is known.
+Links::Found Links::part_in_expression(const Use& use, std::string_view part) {
+  diagnostics_.add(Code::kBoxInExpression, use.operand.span,
+                   "`" + std::string(part) +
+                       "` stands in an expression, where a box of a function "
+                       "has its result and ENO only",
+                   "give it to a variable right below the box, and use that in the expression");
+  return {{}, true, {}};
 }
 
 }  // namespace frontend::fbd

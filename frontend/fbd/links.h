@@ -1,6 +1,7 @@
 // Operands of one network of FBD as text -> links. What an operand names is known when all boxes
 // of the network are, so the reader gives every operand a source in front of its element; here
-// those that name a box become links to it, and their sources go.
+// those that name a box become links to it, and their sources go. A source whose expression has
+// wires in it gets inputs for them (network/expressions.h).
 #pragma once
 
 #include <optional>
@@ -44,6 +45,7 @@ class Links {
   struct Found {  // what an operand names
     std::optional<network::Link> link;
     bool reported = false;
+    std::vector<network::Input> wires;  // of an expression
   };
 
   Found find(const Use& use, network::Network& network);
@@ -51,7 +53,8 @@ class Links {
   static uint32_t box_for(const Use& use, const Box& box);
   Found whole_box(const Use& use, const Box& box);
   Found feedback(const Use& use, const Box& box);
-  Found expression(const Use& use);
+  Found expression(const Use& use, network::Network& network);
+  Found part_in_expression(const Use& use, std::string_view part);
 
   base::Diagnostics& diagnostics_;
   std::unordered_map<std::string, Box> boxes_;  // by folded name

@@ -14,7 +14,8 @@
 //   END_FBD
 //
 // Boxes are executed as they stand. An operand is a wire, an output of a box after a `.`
-// (delay.Q, cold.ENO), or an expression without wires. `NOT x`, `[/ x]`, `[P x]`, `[N x]` are
+// (delay.Q, cold.ENO), or an expression, in which wires are values as variables are
+// (network/expressions.h). `NOT x`, `[/ x]`, `[P x]`, `[N x]` are
 // pins that are negated or see edges. EN and ENO are pins as others: while EN is FALSE,
 // variables that a box writes stay as they are. The output of a function block may be used above
 // its box: then it is that of the last scan. A wire may not: it is kept nowhere. Wires are known

@@ -29,7 +29,7 @@ enum class Kind : uint8_t {
   kRightRail,  // inputs only; does nothing
   kContact,    // operand: BOOL expression; input 0 -> output 0
   kCoil,       // operand: variable; input 0 -> output 0, which passes power on
-  kSource,     // operand: expression (inVariable); output 0
+  kSource,     // operand: expression (inVariable); output 0; inputs: wires in it (expressions.h)
   kSink,       // operand: variable (outVariable); input 0; S and R as coils have them
   kBlock,      // type; operand: instance, empty for functions; inputs and outputs by name
   kJump,       // operand: label; input 0

@@ -8,6 +8,7 @@
 #include "frontend/lex/characters.h"
 #include "frontend/lex/lexer.h"
 #include "frontend/network/element_text.h"
+#include "frontend/network/expressions.h"
 #include "ir/types/types.h"
 
 namespace frontend::network {
@@ -82,7 +83,7 @@ class Printer {
       case Kind::kRightRail:
         break;
       case Kind::kSource:
-        text_[i] = '{' + normal(element.operand.text) + '}';
+        text_[i] = '{' + expression(element) + '}';
         break;
       case Kind::kContact: {
         std::string own = std::to_string(read_behind(element)) + ' ' + print(element);
@@ -99,6 +100,7 @@ class Printer {
 
   uint32_t read_behind(const Element& contact) const;
   void note_written(const Element& element);
+  std::string expression(const Element& source) const;
   std::string print(const Element& element) const;
   std::string print(const Input& input) const;
   std::string link(Link link, bool& negated) const;
@@ -138,6 +140,18 @@ void Printer::note_written(const Element& element) {
   bool move = box && operand.empty() && ir::same_name(element.type.text, "MOVE");
   if (box ? !move : operand.find_first_of("^%(#") != std::string::npos) unknown_ = done_;
   for (const std::string& word : words(operand)) written_[word] = done_;
+}
+
+// A wire in it is what it comes from, whatever its name.
+std::string Printer::expression(const Element& source) const {
+  std::string out;
+  for (const OperandPiece& piece : operand_pieces(source)) {
+    bool negated = false;
+    const std::string text =
+        piece.input == nullptr ? normal(piece.text) : link(piece.input->from[0], negated);
+    out += (out.empty() || text.empty() ? "" : " ") + std::string(negated ? "!" : "") + text;
+  }
+  return out;
 }
 
 std::string Printer::print(const Element& element) const {
@@ -189,7 +203,8 @@ std::string Printer::print(const Input& input) const {
 std::string Printer::link(Link link, bool& negated) const {
   const Element& from = network_->elements[link.element];
   std::string operand = normal(from.operand.text);
-  if (from.kind == Kind::kSource && ir::same_name(operand.substr(0, 4), "NOT ")) {
+  const bool source = from.kind == Kind::kSource && from.inputs.empty();
+  if (source && ir::same_name(operand.substr(0, 4), "NOT ")) {
     std::string name = operand.substr(4);
     std::erase(name, ' ');
     if (is_plain_name(name)) {  // as a pin that is negated

@@ -7,6 +7,7 @@
 
 #include "frontend/lex/characters.h"
 #include "frontend/network/element_text.h"
+#include "frontend/network/expressions.h"
 #include "frontend/network/head.h"
 #include "frontend/network/write.h"
 #include "ir/types/types.h"
@@ -66,6 +67,7 @@ class Writer {
   void conditional(uint32_t i, std::string_view words);
   void assign(const Element& to, Value value);
 
+  std::string expression(const Element& source);
   Value value(const Input& input);
   Value value(Link link);
   Value with(Value value, Modifier modifier);
@@ -224,7 +226,7 @@ void Writer::element(uint32_t i) {
     case Kind::kRightRail:
       return;
     case Kind::kSource:
-      terms_[i] = {{Modifier::kNone, element.operand.text, false}};
+      terms_[i] = {{Modifier::kNone, expression(element), false}};
       return;
     case Kind::kContact:
       return contact(i);
@@ -312,6 +314,14 @@ void Writer::block(uint32_t i) {
   bool free = !element.wire.empty() && claimed_.insert(ir::fold_name(element.wire.text)).second;
   wires_[i] = free ? element.wire.text : new_name(element.type.text);
   row("WIRE " + wires_[i] + " := " + call);
+}
+
+// Wires may have got other names.
+std::string Writer::expression(const Element& source) {
+  return operand_with(source, [&](const Input& wire) {
+    const Value from = value(wire);
+    return from.modifier == Modifier::kNone ? from.text : "(NOT " + from.text + ')';
+  });
 }
 
 Value Writer::value(const Input& input) {

@@ -107,7 +107,8 @@ void Parser::Diagram::count_uses() {
       if (!last) next_box_[i] = std::exchange(box->second, i);
     }
     targets_[i] = i;
-    bool passes = element.kind == Kind::kContact || (element.kind == Kind::kBlock && !instance);
+    bool passes = element.kind == Kind::kContact || element.kind == Kind::kSource ||
+                  (element.kind == Kind::kBlock && !instance);
     for (size_t o = 0; passes && o < outputs_[i].size(); ++o) {
       if (outputs_[i][o].uses == 0 || outputs_[i][o].user <= i) continue;
       targets_[i] = targets_[outputs_[i][o].user];
@@ -254,7 +255,7 @@ ExprId Parser::Diagram::output(network::Link link, base::SourceSpan span) {
   const network::Output& output = from.outputs[link.output];
   ExprId value;
   if (from.kind == Kind::kSource) {
-    value = parse(from.operand);
+    value = expression(from);
   } else if (ExprId kept = outputs_[link.element][link.output].kept; kept.valid()) {
     value = p_.copy_of(kept, span);
   } else if (from.kind == Kind::kBlock && !from.operand.empty()) {
@@ -263,6 +264,18 @@ ExprId Parser::Diagram::output(network::Link link, base::SourceSpan span) {
     value = boolean(false, span);  // reported by the reader
   }
   return output.negated ? p_.negated(value, span) : value;
+}
+
+// An operand; the wires in it are values that were kept.
+ExprId Parser::Diagram::expression(const Element& source) {
+  std::unordered_map<std::string, ExprId> wires;
+  for (const network::Input& input : source.inputs) {
+    wires.emplace(ir::fold_name(input.name), output(input.from[0], source.span));
+  }
+  if (!wires.empty()) p_.wires_ = &wires;
+  const ExprId value = parse(source.operand);
+  p_.wires_ = nullptr;
+  return value;
 }
 
 // TRUE in the scan in which `value` rises or falls.

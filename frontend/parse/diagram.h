@@ -46,6 +46,7 @@ class Parser::Diagram {
   Value input(const network::Input& input);
   Value linked(const network::Input& input);
   ExprId output(network::Link link, base::SourceSpan span);
+  ExprId expression(const Element& source);
   ExprId edge(ExprId value, network::Modifier modifier, const std::string& of,
               base::SourceSpan span);
   Name memory(const std::string& of, network::Modifier modifier, base::SourceSpan span);

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -215,6 +216,7 @@ class Parser {
 
   // --- diagram*.cc, diagram_body.cc
   class Diagram;
+  ExprId wire_value();  // invalid: no name of `wires_` stands here
   bool at_diagram() const;
   void parse_diagram(PouDecl& pou);
   void report_mixed_body();
@@ -353,6 +355,8 @@ class Parser {
   base::Diagnostics& diagnostics_;
   static constexpr uint32_t kNoOwner = 0xffffffffu;
   bool panic_ = false;
+  // In an expression of a diagram: the values of its wires, by folded name.
+  const std::unordered_map<std::string, ExprId>* wires_ = nullptr;
   bool type_level_ = false;   // the specification begins that a TYPE declares
   bool in_property_ = false;  // GET and SET begin accessors
   bool in_instructions_ = false;

@@ -4,6 +4,9 @@
 namespace frontend {
 
 ExprId Parser::parse_variable() {
+  if (wires_ != nullptr && next_kind() != TokenKind::kLeftParen) {
+    if (const ExprId value = wire_value(); value.valid()) return parse_postfix(value);
+  }
   Expr expr;
   const Token token = take();
   expr.name = name_of(token);

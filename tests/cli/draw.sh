@@ -44,6 +44,16 @@ expect 0 stc draw spaces.st spaces2.st -o spaces
 [ "$(ls spaces | tr '\n' ' ')" = "A.M.svg B.C.M.svg " ] || fail "other pictures: $(ls spaces)"
 expect 0 stc draw spaces.st spaces2.st A.M -o one.svg
 
+# An expression of wires is a box: its wires arrive there.
+printf 'PROGRAM P\nVAR a : INT; r : REAL; END_VAR\nFBD\n  WIRE e := ADD(a, 1);\n  r := e * 2.0;\nEND_FBD\nEND_PROGRAM\n' >expression.st
+expect 0 stc draw expression.st -o expression.svg
+printf 'P.a=1\nP.r=4.0\n' >expression.values
+expect 0 stc draw expression.st --values expression.values -o expression_live.svg
+for picture in expression.svg expression_live.svg; do
+  grep -q '>e \* 2.0</text>' $picture || fail "no box of the expression: $(cat $picture)"
+  grep -q '>e</text>' $picture || fail "no pin of the wire"
+done
+
 # With values of a file.
 printf 'Starter.Motor=TRUE\nStarter.Stop=FALSE\nStarter.Tripped=FALSE\nStarter.Starts.CV=3\n' > values
 expect 0 stc draw "$examples/motor_starter" --values values -o live.svg

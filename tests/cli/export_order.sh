@@ -79,3 +79,36 @@ END_PROGRAM
 S
 same chart 3 P.s3.X P.s4.X
 grep -qx P.s3.X=TRUE chart.values || fail "$(cat chart.values)"
+
+# --- expressions of wires are boxes of functions for other editors
+forms='tc6-2.01 61131-10'
+cat >expression.st <<'S'
+PROGRAM P
+VAR n, sum, high : INT; r : REAL; low, off : BOOL; t : TIME; END_VAR
+FBD
+  WIRE e := ADD(n, 1);
+  n := e;
+  r := (e - n - 1) * 2.0 / 4.0;
+  WIRE some := MUL(EN := e > 1, e MOD 2 + 1, 10 - e);
+  sum := sum + some;
+  low := NOT (e < 2 OR e >= 3) & (some.ENO XOR off);
+  high := SEL(e = 2, MAX(e, n, 3 * n), IN1 := e * e);
+  WIRE long := MUL(T#1s, e);
+  t := long + T#1ms * n;
+  RETURN IF e <> 2;
+  off := e > 1 AND NOT off;
+END_FBD
+END_PROGRAM
+S
+same expression 4 P.n P.sum P.high P.r P.low P.off P.t
+grep -qx P.t=T#4s4ms expression.values || fail "$(cat expression.values)"
+needs_xml stc export expression.st -o expression.xml --force --as tc6-2.01 --without-sources
+grep -q '<block .*typeName="GE"' expression.xml || fail "no box of a comparison"
+
+# What no box of a function says goes out as text, and is said.
+printf 'PROGRAM P\nVAR n : INT; a : ARRAY[0..9] OF INT; END_VAR\nFBD\n  WIRE e := ADD(n, 1);\n  n := a[e];\nEND_FBD\nEND_PROGRAM\n' >index.st
+expect 0 stc export index.st -o index.xml
+grep -q W0074 err || fail "an index is not said: $(cat err)"
+expect 0 stc import index.xml -o index
+cmp index.st index/index.st || fail "the index of a wire is lost"
+expect 1 stc export index.st -o index2.xml --without-sources

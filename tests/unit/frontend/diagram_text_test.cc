@@ -175,5 +175,32 @@ TEST(DiagramText, BoxesComeBackAsTheyWere) {
   EXPECT_EQ(frontend::network::write_fbd(body, 2), rows);
 }
 
+// A name that is taken is no wire's; expressions say the new one.
+TEST(DiagramText, WiresOfExpressionsGetTheirNewNames) {
+  const std::string rows =
+      "WIRE low := LT(EN := b, n, 20);\n"
+      "r := MAX(low, low * 2, n.low, F(low := low)) + E#low + low.ENO;\n";
+  base::Diagnostics diagnostics;
+  Body body = frontend::fbd::read(rows, base::SourcePos{0}, diagnostics);
+  ASSERT_TRUE(diagnostics.all().empty()) << diagnostics.all()[0].text;
+  EXPECT_EQ(frontend::network::write_fbd(body, 0), rows);
+  EXPECT_EQ(frontend::network::write_fbd(body, 0, "low"),
+            "WIRE lt1 := LT(EN := b, n, 20);\n"
+            "r := MAX(lt1, lt1 * 2, n.low, F(low := lt1)) + E#low + lt1.ENO;\n");
+}
+
+// Bodies with the same expressions of other wires are not the same.
+TEST(DiagramText, ExpressionsAreComparedByTheirWires) {
+  const auto meaning = [](const std::string& rows) {
+    base::Diagnostics diagnostics;
+    return frontend::network::canonical(frontend::fbd::read(rows, base::SourcePos{0}, diagnostics));
+  };
+  const std::string boxes = "WIRE a := ADD(x, 1); WIRE b := SUB(x, 1);";
+  EXPECT_EQ(meaning(boxes + "y := 2*a;"), meaning(boxes + "y := 2 * A;"));
+  EXPECT_NE(meaning(boxes + "y := 2 * a;"), meaning(boxes + "y := 2 * b;"));
+  EXPECT_EQ(meaning(boxes + "y := 2 * a;"),
+            meaning("WIRE c := ADD(x, 1); WIRE d := SUB(x, 1); y := 2 * c;"));
+}
+
 }  // namespace
 }  // namespace frontend_test
