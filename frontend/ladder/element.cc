@@ -22,12 +22,14 @@ using network::Text;
 class ElementReader {
  public:
   ElementReader(std::string_view text, base::SourcePos begin, const Piece& piece,
-                network::Network& network, base::Diagnostics& diagnostics)
+                network::Network& network, base::Diagnostics& diagnostics,
+                const DeclarationIndex* declarations)
       : piece_(piece),
         span_{{begin.offset + piece.byte}, {begin.offset + piece.byte + piece.bytes}},
         cursor_(text.substr(piece.byte + 1, piece.bytes - 2), {span_.begin.offset + 1},
                 diagnostics),
-        network_(network) {}
+        network_(network),
+        declarations_(declarations) {}
 
   std::optional<Made> run() {
     size_t before = network_.elements.size();
@@ -225,8 +227,11 @@ class ElementReader {
       }
       element.inputs.push_back(std::move(input));
     }
-    const char* arrives = is_timer(element, pins) ? "IN" : "EN";
-    if (!power_in) element.inputs.insert(element.inputs.begin(), Input{arrives, {}, {}, span_});
+    if (!power_in) {
+      const char* arrives = times_power(element, pins) ? "IN" : "EN";
+      Input power{arrives, {}, Modifier::kNone, true, span_};
+      element.inputs.insert(element.inputs.begin(), std::move(power));
+    }
     bool enable = ir::same_name(element.inputs[made.input].name, "EN");
     std::string way = power_out != nullptr ? power_out->name.text : enable ? "ENO" : usual_output;
     std::vector<std::pair<uint32_t, const Pin*>> sinks;
@@ -241,22 +246,35 @@ class ElementReader {
     return made;
   }
 
-  // TON, TOF, TP: power is what they time, unless the box says what IN is.
-  static bool is_timer(const Element& element, const std::vector<Pin>& pins) {
-    static constexpr std::string_view kTimers[] = {"TON", "TOF", "TP"};
-    std::string_view type = element.type.text;
+  // Power is what a timer times, unless the box says what IN is.
+  bool times_power(const Element& element, const std::vector<Pin>& pins) const {
+    const bool said = std::ranges::any_of(pins, [](const Pin& pin) {
+      const std::string_view name = pin.name.text;
+      return !pin.output &&
+             (name.empty() || ir::same_name(name, "IN") || ir::same_name(name, "EN"));
+    });
+    return !said && !element.operand.empty() && extends_timer(element.type.text);
+  }
+
+  bool extends_timer(std::string_view type) const {
+    constexpr int kMostBases = 100;  // a block that extends itself is reported elsewhere
     if (const size_t dot = type.rfind('.'); dot != type.npos) type.remove_prefix(dot + 1);
+    for (int i = 0; i < kMostBases && !type.empty(); ++i) {
+      if (is_timer(type)) return true;
+      type = declarations_ == nullptr ? std::string_view() : declarations_->base_of(type);
+    }
+    return false;
+  }
+
+  // TON, TOF, TP and their variants.
+  static bool is_timer(std::string_view type) {
+    static constexpr std::string_view kTimers[] = {"TON", "TOF", "TP"};
     for (const std::string_view variant : {"_LTIME", "_TIME"}) {
       const size_t front = type.size() - std::min(type.size(), variant.size());
       if (ir::same_name(type.substr(front), variant)) type = type.substr(0, front);
     }
-    const bool named = std::ranges::any_of(
-        kTimers, [&](std::string_view timer) { return ir::same_name(type, timer); });
-    return named && !element.operand.empty() && std::ranges::none_of(pins, [](const Pin& pin) {
-             const std::string_view name = pin.name.text;
-             return !pin.output &&
-                    (name.empty() || ir::same_name(name, "IN") || ir::same_name(name, "EN"));
-           });
+    return std::ranges::any_of(kTimers,
+                               [&](std::string_view timer) { return ir::same_name(type, timer); });
   }
 
   Made twice(const Pin& pin, const char* text) {
@@ -297,13 +315,15 @@ class ElementReader {
   base::SourceSpan span_;
   Cursor cursor_;
   network::Network& network_;
+  const DeclarationIndex* declarations_;
 };
 
 }  // namespace
 
 std::optional<Made> make_element(std::string_view text, base::SourcePos begin, const Piece& piece,
-                                 network::Network& network, base::Diagnostics& diagnostics) {
-  return ElementReader(text, begin, piece, network, diagnostics).run();
+                                 network::Network& network, base::Diagnostics& diagnostics,
+                                 const DeclarationIndex* declarations) {
+  return ElementReader(text, begin, piece, network, diagnostics, declarations).run();
 }
 
 }  // namespace frontend::ladder

@@ -5,6 +5,7 @@
 
 #include "base/diagnostics.h"
 #include "frontend/ladder/rungs.h"
+#include "frontend/lex/declaration_index.h"
 #include "frontend/network/network.h"
 
 namespace frontend::ladder {
@@ -16,8 +17,10 @@ struct Made {
   network::Link out;
 };
 
-// Appends to `network`; nullopt when reported (E1046). `text` holds the piece's bytes.
+// Appends to `network`; nullopt when reported (E1046). `text` holds the piece's bytes;
+// `declarations`: as in read.h.
 std::optional<Made> make_element(std::string_view text, base::SourcePos begin, const Piece& piece,
-                                 network::Network& network, base::Diagnostics& diagnostics);
+                                 network::Network& network, base::Diagnostics& diagnostics,
+                                 const DeclarationIndex* declarations);
 
 }  // namespace frontend::ladder

@@ -15,12 +15,14 @@ using Code = base::DiagnosticCode;
 class RungReader {
  public:
   RungReader(std::string_view text, base::SourcePos begin, const Rung& rung,
-             network::Network& network, base::Diagnostics& diagnostics)
+             network::Network& network, base::Diagnostics& diagnostics,
+             const DeclarationIndex* declarations)
       : text_(text),
         begin_(begin),
         rung_(rung),
         network_(network),
         diagnostics_(diagnostics),
+        declarations_(declarations),
         made_(rung.pieces.size()) {}
 
   void run() {
@@ -164,7 +166,7 @@ class RungReader {
 
   void make(uint32_t number) {
     const Piece& piece = rung_.pieces[number];
-    auto made = make_element(text_, begin_, piece, network_, diagnostics_);
+    auto made = make_element(text_, begin_, piece, network_, diagnostics_, declarations_);
     if (!made) return;
     for (network::Comment& comment : network::comments_in(text_.substr(piece.byte, piece.bytes))) {
       network_.comments.push_back(std::move(comment.text));
@@ -189,6 +191,7 @@ class RungReader {
   const Rung& rung_;
   network::Network& network_;
   base::Diagnostics& diagnostics_;
+  const DeclarationIndex* declarations_;
   std::vector<std::optional<Made>> made_;
 };
 
@@ -235,7 +238,8 @@ class Heads {
 
 }  // namespace
 
-network::Body read(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics) {
+network::Body read(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics,
+                   const DeclarationIndex* declarations) {
   if (!begin.valid()) begin = {0};
   network::Body body;
   body.language = network::Language::kLadder;
@@ -247,7 +251,7 @@ network::Body read(std::string_view text, base::SourcePos begin, base::Diagnosti
     const Piece& first = rung.pieces.front();
     const Piece& last = rung.pieces.back();
     network.span = {{begin.offset + first.byte}, {begin.offset + last.byte + last.bytes}};
-    RungReader(text, begin, rung, network, diagnostics).run();
+    RungReader(text, begin, rung, network, diagnostics, declarations).run();
     body.networks.push_back(std::move(network));
   }
   network::Network rest = heads.take(static_cast<uint32_t>(rows.size()), body);

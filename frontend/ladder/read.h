@@ -24,20 +24,23 @@
 //   [ v := F(a, b) ]  [ v := a + b ]    done when power arrives: EN; power goes on by ENO
 //   [ F(EN:=_, a, =>v) ]  [ F(a, _) ]   function; `=>v`: its result
 //
-// `_` is the pin where power arrives; without it that is EN. `=>_` is where it goes on; without it
-// that is ENO for EN, Q of a function block, the result of a function. Arguments may be in
-// parentheses or not. `NOT`, `[/ x]`, `[P x]`, `[N x]` as the value of an argument stand for a
-// pin that is negated or sees edges.
+// `_` is the pin where power arrives; without it that is EN, and IN of a timer. `=>_` is where it
+// goes on; without it that is ENO for EN, Q of a function block, the result of a function.
+// Arguments may be in parentheses or not. `NOT`, `[/ x]`, `[P x]`, `[N x]` as the value of an
+// argument stand for a pin that is negated or sees edges.
 #pragma once
 
 #include "base/diagnostics.h"
+#include "frontend/lex/declaration_index.h"
 #include "frontend/network/network.h"
 
 namespace frontend::ladder {
 
 // `text` is what stands between LADDER and END_LADDER and begins at `begin` of a SourceMap;
 // invalid: it stands in none. Reports what is wrong (E1040..E1059) and gives what could be
-// understood, well-formed as network.h demands.
-network::Body read(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics);
+// understood, well-formed as network.h demands. `declarations` tells which blocks EXTEND a timer;
+// without them only TON, TOF and TP are timers, and power of others gets to EN by itself.
+network::Body read(std::string_view text, base::SourcePos begin, base::Diagnostics& diagnostics,
+                   const DeclarationIndex* declarations = nullptr);
 
 }  // namespace frontend::ladder

@@ -104,7 +104,12 @@ class Collector {
   void begin_pou() {
     size_t name = at_ + 1;
     while (is_specifier(kind(name)) && is_name(kind(name + 1))) ++name;
-    add(DeclaredKind::kPou, name, at_);
+    Declared& pou = add(DeclaredKind::kPou, name, at_);
+    size_t base = name + 1;
+    if (kind(base) == TokenKind::kExtends && is_name(kind(++base))) {
+      while (kind(base + 1) == TokenKind::kDot && is_name(kind(base + 2))) base += 2;
+      pou.type = text(base);
+    }
     pou_begin_ = begin(at_);
     locals_.clear();
   }
@@ -187,6 +192,17 @@ const Declared* DeclarationIndex::find(DeclaredKind kind, std::string_view name,
     if (best == nullptr || declared.begin > best->begin) best = &declared;
   }
   return best;
+}
+
+std::string_view DeclarationIndex::base_of(std::string_view pou) const {
+  const auto& names = table().kinds[static_cast<size_t>(DeclaredKind::kPou)];
+  const auto found = names.find(ir::fold_name(pou));
+  if (found == names.end()) return {};
+  const std::string_view base = found->second.front().type;
+  for (const Declared& other : found->second) {
+    if (!ir::same_name(other.type, base)) return {};
+  }
+  return base;
 }
 
 }  // namespace frontend

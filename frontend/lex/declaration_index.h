@@ -19,7 +19,9 @@ std::optional<DeclaredKind> declared_kind(std::string_view word);
 
 struct Declared {
   std::string_view name;
-  std::string_view type;  // kVariable: the first word of its type
+  // kVariable: the first word of its type; kPou: the name behind EXTENDS, without what is in
+  // front of its last dot.
+  std::string_view type;
   std::vector<std::string_view> attributes;
   // Where a POU's variable is visible; globals are everywhere.
   uint32_t begin = 0;
@@ -32,6 +34,8 @@ class DeclarationIndex {
   ~DeclarationIndex();
   // What `name` means at a position, or null; a POU's own variables come first.
   const Declared* find(DeclaredKind kind, std::string_view name, uint32_t position) const;
+  // What the POU of that name extends; empty when there are several and they differ in that.
+  std::string_view base_of(std::string_view pou) const;
 
  private:
   struct Table;

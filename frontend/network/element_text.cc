@@ -1,5 +1,7 @@
 #include "frontend/network/element_text.h"
 
+#include <algorithm>
+
 #include "frontend/lex/characters.h"
 #include "frontend/lex/lexer.h"
 #include "ir/types/types.h"
@@ -90,7 +92,7 @@ class BoxText {
     }
     if (!function_) {
       std::string head = block_.operand.text + ": " + block_.type.text;
-      std::string pins = list(inputs_, false);
+      std::string pins = list(inputs_, names_enable());
       return "[ " + head + (pins.empty() ? "" : "  " + pins) + " ]";
     }
     if (result_.empty()) return "[ " + block_.type.text + '(' + list(inputs_, true) + ") ]";
@@ -103,6 +105,7 @@ class BoxText {
   bool output(uint32_t pin, uint32_t& unnamed);
   std::string list(const std::vector<std::string>& inputs, bool with_enable) const;
   std::string value() const;
+  bool names_enable() const;
 
   const Network& network_;
   const Sinks& sinks_;
@@ -181,6 +184,14 @@ std::string BoxText::list(const std::vector<std::string>& inputs, bool with_enab
     for (const std::string& pin : *part) out += (out.empty() ? "" : ", ") + pin;
   }
   return out;
+}
+
+// A block may be a timer, as only others know: power gets to its IN then, unless the box says EN.
+bool BoxText::names_enable() const {
+  return !block_.inputs[cell_.input].by_itself &&
+         std::ranges::none_of(block_.inputs, [](const Input& input) {
+           return input.name.empty() || ir::same_name(input.name, "IN");
+         });
 }
 
 // After `v :=`: a call, or what a MOVE has at its input.

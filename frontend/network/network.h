@@ -55,6 +55,7 @@ struct Input {
   std::string name;                     // formal parameter; empty: by position, or the only input
   std::vector<Link> from;               // none: not connected; several: their OR
   Modifier modifier = Modifier::kNone;  // kNegated, kRising, kFalling
+  bool by_itself = false;               // ladder as text does not name it: power gets there
   base::SourceSpan span;
 };
 

@@ -268,14 +268,32 @@ ExprId Parser::Diagram::output(network::Link link, base::SourceSpan span) {
 
 // An operand; the wires in it are values that were kept.
 ExprId Parser::Diagram::expression(const Element& source) {
-  std::unordered_map<std::string, ExprId> wires;
+  wires_.clear();
   for (const network::Input& input : source.inputs) {
-    wires.emplace(ir::fold_name(input.name), output(input.from[0], source.span));
+    wires_.emplace(ir::fold_name(input.name), output(input.from[0], source.span));
   }
-  if (!wires.empty()) p_.wires_ = &wires;
+  if (!wires_.empty()) p_.wires_ = this;
   const ExprId value = parse(source.operand);
   p_.wires_ = nullptr;
   return value;
+}
+
+ExprId Parser::Diagram::wire_value() {
+  const std::string name = ir::fold_name(p_.text(*p_.current_));
+  size_t tokens = 1;
+  auto wire = wires_.end();
+  if (p_.next_kind() == TokenKind::kDot && is_name(p_.peek(2).kind)) {
+    wire = wires_.find(name + '.' + ir::fold_name(p_.text(p_.peek(2))));
+    tokens = 3;
+  }
+  if (wire == wires_.end()) {
+    wire = wires_.find(name);
+    tokens = 1;
+  }
+  if (wire == wires_.end()) return {};
+  const base::SourcePos begin = p_.here();
+  while (tokens-- > 0) p_.take();
+  return p_.copy_of(wire->second, p_.span_from(begin));
 }
 
 // TRUE in the scan in which `value` rises or falls.

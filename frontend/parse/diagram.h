@@ -20,6 +20,9 @@ class Parser::Diagram {
  public:
   Diagram(Parser& parser, PouDecl& pou) : p_(parser), tree_(parser.tree_), pou_(pou) {}
   void run(const network::Body& body);  // adds statements, and variables to the POU
+  // Where the parser reads an expression with wires: what a wire carries, when its name or that of
+  // its ENO begins there; its tokens are taken then. Else invalid.
+  ExprId wire_value();
 
  private:
   using Element = network::Element;
@@ -90,6 +93,7 @@ class Parser::Diagram {
   std::vector<ExprId> conditions_;                      // by element: when its outputs are stored
   std::vector<bool> done_;                              // sinks that a call has written
   std::unordered_map<std::string, uint32_t> memories_;  // folded names
+  std::unordered_map<std::string, ExprId> wires_;       // of the expression that is read
   VarBlock kept_;                                       // what edges remember
 };
 

@@ -3,7 +3,6 @@
 #include "frontend/ladder/read.h"
 #include "frontend/parse/diagram.h"
 #include "frontend/parse/token_sets.h"
-#include "ir/types/types.h"
 
 namespace frontend {
 
@@ -24,33 +23,14 @@ void Parser::parse_diagram(PouDecl& pou) {
   TokenKind end = ladder ? TokenKind::kEndLadder : TokenKind::kEndFbd;
   base::SourcePos begin{opening.begin + opening.length};
   std::string_view text = text_.substr(begin.offset - base_, current_->begin - begin.offset);
-  network::Body body =
-      ladder ? ladder::read(text, begin, diagnostics_) : fbd::read(text, begin, diagnostics_);
+  network::Body body = ladder ? ladder::read(text, begin, diagnostics_, declarations_)
+                              : fbd::read(text, begin, diagnostics_);
   Diagram(*this, pou).run(body);
   pou.diagram = static_cast<uint32_t>(tree_.diagrams.size());
   tree_.diagrams.push_back(std::move(body));
   if (!accept(end)) report_missing_end(opening, end);
   accept(TokenKind::kSemicolon);
   panic_ = false;
-}
-
-// What a wire carries, where its name, or that of its ENO, begins; its tokens are taken then.
-ExprId Parser::wire_value() {
-  std::string name = ir::fold_name(text(*current_));
-  size_t tokens = 1;
-  auto wire = wires_->end();
-  if (next_kind() == TokenKind::kDot && is_name(peek(2).kind)) {
-    wire = wires_->find(name + '.' + ir::fold_name(text(peek(2))));
-    tokens = 3;
-  }
-  if (wire == wires_->end()) {
-    wire = wires_->find(name);
-    tokens = 1;
-  }
-  if (wire == wires_->end()) return {};
-  const base::SourcePos begin = here();
-  while (tokens-- > 0) take();
-  return copy_of(wire->second, span_from(begin));
 }
 
 // A drawing outside of any POU.

@@ -36,14 +36,15 @@ void parse(const base::SourceMap& sources, uint32_t file, Tree& tree,
   base::Diagnostics& heard = has_open_comment(diagnostics, before) ? unheard : diagnostics;
   constexpr size_t kMost = 1 << 20;  // a long file may have declarations only
   make_room(tree.stmts, std::min(tokens.tokens.size() / 10, kMost));
-  Parser(sources, file, tokens, tree, heard).parse_file();
+  Parser(sources, file, tokens, tree, heard, options.declarations).parse_file();
 }
 
 Parser::Parser(const base::SourceMap& sources, uint32_t file, const TokenList& tokens, Tree& tree,
-               base::Diagnostics& diagnostics)
+               base::Diagnostics& diagnostics, const DeclarationIndex* declarations)
     : text_(sources.text(file)),
       base_(sources.begin(file).offset),
       list_(tokens),
+      declarations_(declarations),
       first_(tokens.tokens.data()),
       current_(first_),
       last_(first_ + tokens.tokens.size() - 1),

@@ -13,7 +13,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -27,7 +26,7 @@ namespace frontend {
 class Parser {
  public:
   Parser(const base::SourceMap& sources, uint32_t file, const TokenList& tokens, Tree& tree,
-         base::Diagnostics& diagnostics);
+         base::Diagnostics& diagnostics, const DeclarationIndex* declarations);
 
   void parse_file();  // declaration.cc
 
@@ -216,7 +215,6 @@ class Parser {
 
   // --- diagram*.cc, diagram_body.cc
   class Diagram;
-  ExprId wire_value();  // invalid: no name of `wires_` stands here
   bool at_diagram() const;
   void parse_diagram(PouDecl& pou);
   void report_mixed_body();
@@ -346,6 +344,7 @@ class Parser {
   std::string_view text_;
   uint32_t base_;
   const TokenList& list_;
+  const DeclarationIndex* declarations_;  // of all sources; null: not known
   const Token* first_;
   const Token* current_;
   const Token* last_;
@@ -355,8 +354,7 @@ class Parser {
   base::Diagnostics& diagnostics_;
   static constexpr uint32_t kNoOwner = 0xffffffffu;
   bool panic_ = false;
-  // In an expression of a diagram: the values of its wires, by folded name.
-  const std::unordered_map<std::string, ExprId>* wires_ = nullptr;
+  Diagram* wires_ = nullptr;  // in one of its expressions that has wires
   bool type_level_ = false;   // the specification begins that a TYPE declares
   bool in_property_ = false;  // GET and SET begin accessors
   bool in_instructions_ = false;

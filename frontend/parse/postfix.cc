@@ -1,11 +1,12 @@
 // Variables and what follows them: members, bits, indices, calls.
+#include "frontend/parse/diagram.h"
 #include "frontend/parse/instruction_list.h"
 
 namespace frontend {
 
 ExprId Parser::parse_variable() {
   if (wires_ != nullptr && next_kind() != TokenKind::kLeftParen) {
-    if (const ExprId value = wire_value(); value.valid()) return parse_postfix(value);
+    if (const ExprId value = wires_->wire_value(); value.valid()) return parse_postfix(value);
   }
   Expr expr;
   const Token token = take();
