@@ -261,6 +261,7 @@ class Inliner {
     base::check(n.op != Op::kHelper, "a body asks no handler");
     for (Val& v : n.in) v = mapped(v);
     n.mem.index = mapped(n.mem.index);
+    n.mem.pointer = mapped(n.mem.pointer);
     if (n.mem.base == MemBase::kFrame) n.mem.disp += step_;
     if (n.mem.base == MemBase::kSelf && near_) {
       n.mem.disp += *near_;
