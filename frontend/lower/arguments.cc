@@ -1,6 +1,7 @@
 // Arguments of POUs: which goes to which parameter.
 #include "frontend/lower/arguments.h"
 #include "frontend/sema/calls/calls.h"
+#include "frontend/sema/calls/positional.h"
 #include "frontend/sema/objects/objects.h"
 
 namespace frontend {
@@ -66,22 +67,27 @@ bool Arguments::bind_named(const Arg& arg, const PouInfo& callee, std::vector<Bi
   return true;
 }
 
-// Inputs and in-outs in the order of their declaration, then outputs.
 bool Arguments::bind_positional(const Expr& call, uint32_t count, const PouInfo& callee,
                                 std::vector<Binding>& bindings) {
-  std::vector<VarId> parameters;
-  for (bool outputs : {false, true}) {
-    for (VarId id : ask<Objects>().variables_of(callee)) {
-      if (id == callee.result) continue;
-      VarSection section = resolve(id).section;
-      bool input = section == VarSection::kInput || section == VarSection::kInOut;
-      if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
-    }
-  }
+  const std::vector<VarId> variables = ask<Objects>().variables_of(callee);
+  const auto parameters_for = [&](uint32_t given) {
+    return positional_parameters(sema_.declared, variables, callee.result, given);
+  };
+  const std::vector<VarId> parameters = parameters_for(count);
   if (count > parameters.size()) {
     error(DiagnosticCode::kWrongArgumentCount, call.span,
           quoted_name(callee.decl->name) + " has " + std::to_string(parameters.size()) +
               " parameters, but " + std::to_string(count) + " arguments are given");
+    return false;
+  }
+  const bool reaches_outputs = resolve(parameters[count - 1]).section == VarSection::kOutput;
+  if (reaches_outputs && parameters != parameters_for(static_cast<uint32_t>(parameters.size()))) {
+    error(DiagnosticCode::kWrongArgumentCount, call.span,
+          quoted_name(callee.decl->name) + " has " + std::to_string(parameters.size()) +
+              " parameters, an output in front of others, so " + std::to_string(count) +
+              " arguments without names are ambiguous",
+          "give all in the order of their declaration, or outputs by name: `" +
+              std::string(resolve(parameters[count - 1]).name.text) + " => variable`");
     return false;
   }
   for (uint32_t i = 0; i < count; ++i) {

@@ -127,6 +127,11 @@ Typed Values::natural(ExprId id) {
   return {value(id, type), type};
 }
 
+ir::ValueId Values::loaded(ExprId id) {
+  const ir::Place from = place(id);
+  return build_.load(from, scalar(from.type));
+}
+
 ir::ValueId Values::emit(ExprId id, ir::TypeId own) {
   const Expr& expr = tree_[id];
   set_line(expr.span);
@@ -142,16 +147,14 @@ ir::ValueId Values::emit(ExprId id, ir::TypeId own) {
     case ExprKind::kMember:
     case ExprKind::kIndex:
     case ExprKind::kDeref:
-    case ExprKind::kDirect: {
-      ir::Place from = place(id);
-      return build_.load(from, scalar(from.type));
-    }
+    case ExprKind::kDirect:
+      return loaded(id);
     case ExprKind::kUnary:
       return emit_unary(expr, own);
     case ExprKind::kBinary:
       return emit_binary(expr, own);
-    case ExprKind::kCall:
-      return ask<CallCode>().emit_call(expr, own);
+    case ExprKind::kCall:  // the result may be a REFERENCE TO the value
+      return note.reference.valid() ? loaded(id) : ask<CallCode>().emit_call(expr, own);
     case ExprKind::kAssign:
       return ask<Assignments>().emit_assignment(expr);
     case ExprKind::kResult:

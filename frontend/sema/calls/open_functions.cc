@@ -3,6 +3,7 @@
 // in-outs whose argument has another capacity: inside, the argument's own one counts.
 #include "frontend/sema/calls/open_functions.h"
 #include "frontend/sema/calls/calls.h"
+#include "frontend/sema/calls/positional.h"
 #include "frontend/sema/declarations/collection.h"
 #include "frontend/sema/declarations/interfaces.h"
 #include "frontend/sema/expressions/operator_types.h"
@@ -65,15 +66,11 @@ bool Collection::is_open(const PouDecl& decl) const {
 
 // Quiet: what does not match is reported where the call is lowered.
 std::vector<Match> OpenFunctions::match(const Expr& call, const PouInfo& callee) const {
-  std::vector<VarId> parameters;
-  for (bool outputs : {false, true}) {
-    for (VarId id : callee.variables) {
-      if (id == callee.result) continue;
-      VarSection section = sema_.declared.variables[id.index].section;
-      bool input = section == VarSection::kInput || section == VarSection::kInOut;
-      if (outputs ? section == VarSection::kOutput : input) parameters.push_back(id);
-    }
-  }
+  const Arg* const args = sema_.tree.args.data() + call.list.first;
+  const Arg* const named =
+      std::find_if(args, args + call.list.count, [](const Arg& arg) { return !arg.name.empty(); });
+  const std::vector<VarId> parameters = positional_parameters(
+      sema_.declared, callee.variables, callee.result, static_cast<uint32_t>(named - args));
   std::vector<Match> matches;
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = sema_.tree.args[call.list.first + i];
