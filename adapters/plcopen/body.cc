@@ -168,6 +168,20 @@ std::string expression_of(std::string_view text, const std::string& name) {
 
 }  // namespace
 
+std::string statements_of_condition(Node body, const std::string& name) {
+  const Node st = xml::child(body, "ST");
+  const std::string text = xml::text_of(st);
+  if (!st || name.empty() || !expression_of(text, name).empty()) return {};
+  const std::string folded = base::fold_name(text);
+  const std::string wanted = base::fold_name(name);
+  for (size_t at = folded.find(wanted); at != std::string::npos; at = folded.find(wanted, at + 1)) {
+    const bool begins = at == 0 || !frontend::is_name_part(folded[at - 1]);
+    const std::string_view rest = std::string_view(folded).substr(at + wanted.size());
+    if (begins && xml::trimmed(rest).starts_with(":=")) return text + "\n";
+  }
+  return {};
+}
+
 std::string condition_text(Node body, const std::string& name, Reporter& report) {
   for (Node node : xml::children(body)) {
     if (xml::is(node, "IL")) return ":\n" + xml::indented(xml::text_of(node), kIndent);

@@ -77,6 +77,8 @@ std::string error_text(const std::string& text);
 // A condition after FROM ... TO ...: `:= expression;`, or an instruction list after a colon.
 // `name` is that of the transition, to which a body may assign its value; it may be empty.
 std::string condition_text(Node body, const std::string& name, Reporter& report);
+// Its text where it is more than an expression: statements in ST that give `name` a value.
+std::string statements_of_condition(Node body, const std::string& name);
 
 // --- action.cc
 // `Fill(D, T#2s);` as it stands in a step.

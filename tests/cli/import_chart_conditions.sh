@@ -67,6 +67,25 @@ expect 0 stc import twice.xml -o twice
 [ "$(grep -c ':= Ready_2();' twice/Plant.st)" = 2 ] || fail "one condition of two transitions"
 [ "$(grep -c 'METHOD PRIVATE Ready_2' twice/Plant.st)" = 1 ] || fail "the method of two transitions"
 expect 0 stc check twice
+# Statements that call a block and give the transition its value, under a name that is taken as well.
+python3 - "$sample" <<'P'
+import re, sys
+text = re.sub(r'(?s)(<transition name="Ready"><body>).*?(</body>)',
+              r'\1<ST><xhtml:p><![CDATA[late(IN := go, PT := T#30ms);\nREADY := late.Q;]]></xhtml:p></ST>\2',
+              open(sys.argv[1]).read())
+open("statements.xml", "w").write(text)
+open("taken.xml", "w").write(text.replace('name="asked"', 'name="Ready"').replace(">asked<", ">Ready<"))
+P
+expect 0 stc import statements.xml -o statements
+grep -qF 'Wait TO Hold := Ready();' statements/Plant.st || fail "a condition of statements"
+expect 0 stc build statements -o statements.img
+places statements.img
+expect 0 stc import taken.xml -o taken
+grep -qF 'Wait TO Hold := Ready_2();' taken/Plant.st || fail "a name that is taken"
+expect 0 stc build taken -o taken.img
+expect 0 stvm run taken.img --scans 8 --virtual-time --print Plant.place --print Plant.Ready
+grep -qxF Plant.place=2 out || fail "the result of statements under another name"
+grep -qxF Plant.Ready=FALSE out || fail "a variable with the name of a transition"
 # A negated one.
 sed 's/<condition negated="false">/<condition negated="true">/' "$sample" >negated.xml
 expect 0 stc import negated.xml -o negated
