@@ -35,8 +35,9 @@ std::string Chart::body_condition(Node body, const std::string& name, const std:
     std::string& call = calls_[body.internal_object()];
     if (!call.empty()) return call;
     const std::string method = actions_.take(xml::as_name(name));
-    if (method != name)
+    if (method != name) {
       text = "VAR\n  " + name + " : BOOL;\nEND_VAR\n" + text + method + " := " + name + ";\n";
+    }
     return call = method_call(method, text);
   }
   return condition_text(body, name, report_);
