@@ -105,6 +105,7 @@ class Drawing {
   void add_remark(Node node, network::Kind kind);
 
   // --- drawing_pins.cc
+  void add_results();
   void add_pins(Node node, uint32_t block, Raw& raw);
   void add_storage(Node pin, uint32_t block);
 

@@ -319,6 +319,7 @@ network::Body Drawing::body() {
   out.language = ladder_ ? network::Language::kLadder : network::Language::kFbd;
   if (failed_) return out;
   forget_places();
+  add_results();
   if (ladder_) compare_as_contacts();
   std::vector<network::Part> parts = network::split(all_, precedences_);
   for (size_t i = 0; i < parts.size(); ++i) {

@@ -1,4 +1,9 @@
 // Pins of blocks -> inputs and outputs of elements of the model, not linked yet.
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+
 #include "adapters/plcopen/drawing.h"
 #include "base/name_case.h"
 #include "stdlib/registry.h"
@@ -73,6 +78,46 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
         {block, static_cast<uint32_t>(all_.elements[block].outputs.size() - 1)});
     const bool open = sink.operand.empty() || sink.operand.text == "???";  // of an editor
     if (!open) push(std::move(sink));
+  }
+}
+
+namespace {
+
+// Functions of the document that have no result, by folded name.
+std::set<std::string> functions_without_result(Node document) {
+  std::set<std::string> out;
+  for (Node pou : xml::children(xml::find(document, {"project", "types", "pous"}), "pou")) {
+    const bool function = xml::attribute(pou, "pouType") == "function";
+    if (!function || xml::find(pou, {"interface", "returnType"})) continue;
+    out.insert(base::fold_name(xml::attribute(pou, "name")));
+  }
+  return out;
+}
+
+}  // namespace
+
+// The first output of a function's box is its result. Where the function has none, the box gets one
+// that nothing is connected to.
+void Drawing::add_results() {
+  std::optional<std::set<std::string>> without;
+  std::vector<bool> added(all_.elements.size());
+  for (size_t i = 0; i < all_.elements.size(); ++i) {
+    Element& block = all_.elements[i];
+    if (block.kind != Kind::kBlock || !block.operand.empty() || block.outputs.empty()) continue;
+    if (!stdlib::parameter_at(block.type.text, 0).empty()) continue;
+    const auto node = nodes_.find(static_cast<uint32_t>(i));
+    if (node == nodes_.end()) continue;
+    if (!without) without = functions_without_result(node->second.root());
+    const bool named = std::ranges::none_of(block.outputs, [](const network::Output& output) {
+      return output.name.empty() || base::same_name(output.name, "OUT");
+    });
+    added[i] = named && without->contains(base::fold_name(block.type.text));
+    if (added[i]) block.outputs.insert(block.outputs.begin(), network::Output{});
+  }
+  for (Element& element : all_.elements) {
+    for (network::Input& input : element.inputs) {
+      for (network::Link& link : input.from) link.output += added[link.element] ? 1 : 0;
+    }
   }
 }
 

@@ -23,6 +23,7 @@
 //   [ inst: TYPE  IN:=_, PT:=t, ET=>e ] function block
 //   [ v := F(a, b) ]  [ v := a + b ]    done when power arrives: EN; power goes on by ENO
 //   [ F(EN:=_, a, =>v) ]  [ F(a, _) ]   function; `=>v`: its result
+//   [ v := F(a, rest=>r) ]              with VAR_OUTPUT: written in this order, the result last
 //
 // `_` is the pin where power arrives; without it that is EN, and IN of a timer. `=>_` is where it
 // goes on; without it that is ENO for EN, Q of a function block, the result of a function.

@@ -102,7 +102,9 @@ class BoxText {
  private:
   bool inputs();
   bool outputs();
-  bool output(uint32_t pin, uint32_t& unnamed);
+  std::string output_name(uint32_t pin) const;
+  bool power(uint32_t pin);
+  bool target(uint32_t pin, uint32_t number);
   std::string list(const std::vector<std::string>& inputs, bool with_enable) const;
   std::string value() const;
   bool names_enable() const;
@@ -114,6 +116,13 @@ class BoxText {
   bool function_;
   bool enabled_ = false;
   std::vector<std::string> inputs_;  // without EN where power arrives
+  struct Target {                    // a variable that is written
+    uint32_t sink = 0;
+    bool only_result = false;  // nothing else gets the result
+    std::string text;
+  };
+  std::vector<Target> targets_;
+  std::string power_;  // `name=>_`; empty: power leaves where it would by itself
   std::vector<std::string> outputs_;
   std::string result_;  // the variable in front of `:=`
 };
@@ -138,43 +147,52 @@ bool BoxText::inputs() {
   return true;
 }
 
+// Variables are written in the order of their sinks, whatever the order of the outputs is.
 bool BoxText::outputs() {
-  uint32_t variables = 0;
   for (uint32_t pin = 0; pin < block_.outputs.size(); ++pin) {
-    variables += static_cast<uint32_t>(sinks_.at(cell_.element, pin).size());
+    if (pin == cell_.output && !power(pin)) return false;
+    for (uint32_t s : sinks_.at(cell_.element, pin)) {
+      if (!target(pin, s)) return false;
+    }
   }
-  for (uint32_t pin = 0; pin < block_.outputs.size(); ++pin) {
-    if (!output(pin, variables)) return false;
+  std::ranges::stable_sort(targets_, {}, [](const Target& target) { return target.sink; });
+  // The call writes the others, then the result goes to the variable in front of it.
+  if (!targets_.empty() && targets_.back().only_result && power_.empty()) {
+    result_ = network_.elements[targets_.back().sink].operand.text;
+    targets_.pop_back();
   }
+  for (Target& target : targets_) outputs_.push_back(std::move(target.text));
+  if (!power_.empty()) outputs_.push_back(power_);
   return true;
 }
 
-// `variables`: sinks at all outputs.
-bool BoxText::output(uint32_t pin, uint32_t& variables) {
+std::string BoxText::output_name(uint32_t pin) const {
+  return (is_result(block_, pin) ? "" : block_.outputs[pin].name) + "=>";
+}
+
+// The output that power leaves by.
+bool BoxText::power(uint32_t pin) {
   const Output& output = block_.outputs[pin];
-  bool result = is_result(block_, pin);
-  std::string name = (result ? "" : output.name) + "=>";
-  bool power = pin == cell_.output;
-  if (power) {
-    if (output.negated) return false;
-    std::string usual = enabled_ ? "ENO" : "Q";
-    bool is_usual = enabled_ || !function_ ? ir::same_name(output.name, usual) : result;
-    if (!is_usual) outputs_.push_back(name + "_");
-  }
-  for (uint32_t s : sinks_.at(cell_.element, pin)) {
-    const Element& sink = network_.elements[s];
-    bool negated = output.negated != (sink.modifier == Modifier::kNegated);
-    bool plain = sink.modifier == Modifier::kNone || sink.modifier == Modifier::kNegated;
-    if (!plain || sink.inputs[0].from.size() != 1) return false;
-    if (sink.inputs[0].modifier == Modifier::kNegated) negated = !negated;
-    if (sink.inputs[0].modifier > Modifier::kNegated) return false;
-    if (result && variables == 1 && !negated && outputs_.empty()) {
-      result_ = sink.operand.text;
-    } else {
-      Modifier modifier = negated ? Modifier::kNegated : Modifier::kNone;
-      outputs_.push_back(name + pin_value(modifier, sink.operand.text));
-    }
-  }
+  if (output.negated) return false;
+  const std::string usual = enabled_ ? "ENO" : "Q";
+  const bool named = enabled_ || !function_;
+  const bool is_usual = named ? ir::same_name(output.name, usual) : is_result(block_, pin);
+  if (!is_usual) power_ = output_name(pin) + "_";
+  return true;
+}
+
+bool BoxText::target(uint32_t pin, uint32_t number) {
+  const Element& sink = network_.elements[number];
+  bool negated = block_.outputs[pin].negated != (sink.modifier == Modifier::kNegated);
+  const bool plain = sink.modifier == Modifier::kNone || sink.modifier == Modifier::kNegated;
+  if (!plain || sink.inputs[0].from.size() != 1) return false;
+  if (sink.inputs[0].modifier == Modifier::kNegated) negated = !negated;
+  if (sink.inputs[0].modifier > Modifier::kNegated) return false;
+  const Modifier modifier = negated ? Modifier::kNegated : Modifier::kNone;
+  const bool only_result =
+      is_result(block_, pin) && !negated && sinks_.at(cell_.element, pin).size() == 1;
+  targets_.push_back(
+      {number, only_result, output_name(pin) + pin_value(modifier, sink.operand.text)});
   return true;
 }
 

@@ -93,6 +93,7 @@ void Parser::Diagram::count_uses() {
         Output& output = outputs_[link.element][link.output];
         ++output.uses;
         output.user = i;
+        output.power = output.power || takes_power(element, input);
       }
     }
   }

@@ -32,8 +32,9 @@ class Parser::Diagram {
   };
   struct Output {
     uint32_t uses = 0;
-    uint32_t user = 0;  // an element that uses it
-    ExprId kept;        // a kResult; invalid: read from the instance, or not made yet
+    uint32_t user = 0;   // an element that uses it
+    bool power = false;  // somebody uses it as power, so it is BOOL
+    ExprId kept;         // a kResult; invalid: read from the instance, or not made yet
   };
 
   // --- diagram.cc
@@ -61,8 +62,10 @@ class Parser::Diagram {
   Range32 arguments(uint32_t number, const Element& element, Value* enable);
   void add_eno(uint32_t number, const Element& element);
   void add_outputs(uint32_t number, const Element& element);
+  void add_power(uint32_t number, uint32_t output);
   bool is_right_below(uint32_t box, const Element& sink) const;
   const Element* only_sink(network::Link link) const;
+  bool takes_power(const Element& element, const network::Input& input) const;
   bool is_result(const Element& element, uint32_t output) const;
 
   // --- expressions and statements

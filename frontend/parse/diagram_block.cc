@@ -119,6 +119,10 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
   for (uint32_t i = 0; i < element.outputs.size(); ++i) {
     bool eno = ir::same_name(element.outputs[i].name, "ENO");
     if (eno || is_result(element, i) || outputs_[number][i].uses == 0) continue;
+    if (outputs_[number][i].power) {
+      add_power(number, i);
+      continue;
+    }
     const Element* to = only_sink({number, i});
     const bool late = to != nullptr && !is_right_below(number, *to);
     if (to == nullptr || late) {
@@ -146,6 +150,37 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
     arg.value = parse(to->operand);
     done_[static_cast<size_t>(to - network_->elements.data())] = true;
     p_.arg_stack_.push_back(arg);
+  }
+}
+
+// Power that leaves by an output beside the result: none while the box does not run.
+void Parser::Diagram::add_power(uint32_t number, uint32_t output) {
+  const Element& element = network_->elements[number];
+  const ExprId kept = p_.add_result(element.span, true);  // a local: the call may not write it
+  const ExprId none = boolean(false, element.span);
+  p_.set_values(kept, {none});
+  emit_assign(p_.copy_of(kept, element.span), none, AssignOp::kAssign, element.span);
+  Arg arg;
+  arg.span = element.span;
+  arg.name = {made(element.outputs[output].name), element.span};
+  arg.output = true;
+  arg.value = p_.copy_of(kept, element.span);
+  outputs_[number][output].kept = kept;
+  p_.arg_stack_.push_back(arg);
+}
+
+// In a ladder everything but a variable gets power from elsewhere; boxes have it at EN.
+bool Parser::Diagram::takes_power(const Element& element, const network::Input& input) const {
+  switch (element.kind) {
+    case Kind::kContact:
+    case Kind::kCoil:
+    case Kind::kJump:
+    case Kind::kReturn:
+      return true;
+    case Kind::kBlock:
+      return ladder_ || ir::same_name(input.name, "EN");
+    default:
+      return false;
   }
 }
 

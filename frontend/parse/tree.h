@@ -242,7 +242,8 @@ struct ConfigDecl {
 };
 
 // What an instruction list keeps of its current result, or a diagram of power and values. `values`
-// are those that come from above; at a label, jumps from below assign others.
+// are those that come from above; at a label, jumps from below assign others. Power that leaves a
+// box by an output is kept as at a label: the call assigns it.
 struct KeptResult {
   Range32 values;  // Tree::expr_lists
   bool at_label = false;

@@ -112,3 +112,53 @@ grep -q W0074 err || fail "an index is not said: $(cat err)"
 expect 0 stc import index.xml -o index
 cmp index.st index/index.st || fail "the index of a wire is lost"
 expect 1 stc export index.st -o index2.xml --without-sources
+
+# --- outputs of functions in rungs: variables behind `=>`, and power
+forms='tc6-2.01 61131-10'
+cat >outputs.st <<'S'
+FUNCTION Split : INT
+VAR_INPUT value : INT; END_VAR
+VAR_OUTPUT rest : INT; big : BOOL; END_VAR
+  rest := value MOD 10;
+  big := value > 100;
+  Split := value / 10;
+END_FUNCTION
+
+FUNCTION Tell
+VAR_INPUT value : INT; END_VAR
+VAR_OUTPUT half : INT; END_VAR
+  half := value / 2;
+END_FUNCTION
+
+PROGRAM P
+VAR n : INT := 71; v, r, w, h : INT; b, d, e, f : BOOL; END_VAR
+  LADDER
+    |--[ n := n + 10 ]--[ v := Split(value:=n, rest=>r, big=>b) ]--( d )--|
+
+    |--[ Split(EN:=_, value:=n, =>w, rest=>r, big=>_) ]------------( e )--|
+
+    |--[ n > 81 ]--[ Tell(EN:=_, value:=n, half=>h) ]--------------( f )--|
+  END_LADDER
+END_PROGRAM
+S
+cp outputs.st outputs.kept
+expect 0 stc fmt outputs.st
+cmp outputs.st outputs.kept || fail "stc fmt changes outputs of functions: $(cat outputs.st)"
+same outputs 3 P.v P.r P.w P.h P.b P.d P.e P.f
+grep -qx P.h=50 outputs.values || fail "$(cat outputs.values)"
+sed -n '/|--/p' outputs.st | sed 's/^ *//' >rungs
+for form in $forms; do
+  sed -n '/|--/p' outputs-$form/P.st | sed 's/^ *//' | cmp - rungs || fail "$form: $(cat outputs-$form/P.st)"
+done
+# Other tools write no pin for the result that a function has not.
+needs_xml stc export outputs.st -o outputs.xml --force --as tc6-2.01 --without-sources
+python3 - <<'P'
+import re
+text = open("outputs.xml").read()
+whole = re.search('<block [^>]*typeName="Tell".*?</block>', text, re.S).group(0)
+less = re.sub('<variable formalParameter="OUT">.*?</variable>', "", whole, flags=re.S)
+assert less != whole
+open("no_result.xml", "w").write(text.replace(whole, less))
+P
+expect 0 stc import no_result.xml -o no_result
+cmp no_result/P.st outputs-tc6-2.01/P.st || fail "an output is taken for a result: $(cat no_result/P.st)"
