@@ -3,12 +3,14 @@
 #include <algorithm>
 
 #include "frontend/lower/arguments.h"
+#include "frontend/lower/assignments.h"
 #include "frontend/lower/method_code.h"
 #include "frontend/lower/places.h"
 #include "frontend/lower/references.h"
 #include "frontend/lower/write_checks.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/objects/objects.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 
@@ -41,8 +43,10 @@ void Arguments::evaluate_input(Binding& binding, bool keep) {
               "`, the argument is `" + sema_.report.type_text(note.type) + "`");
     return;
   }
+  const bool held = ir::holds_instance(types(), note.type);  // it has no place but its own
+  if (held && ask<Assignments>().refuse_copy(note.type, binding.arg->span)) return;
   binding.place = place(id);
-  if (!keep || note.constant) return;
+  if (!keep || note.constant || held) return;
   ir::Place kept = temporary_place(note.type);
   build_.copy(kept, *binding.place);
   binding.place = kept;
@@ -129,7 +133,7 @@ void Arguments::pass_input(const Binding& binding, const ir::Place& parameter) {
   if (variable.section == VarSection::kInOut && !variable.by_reference) {
     if (binding.value.valid()) build_.store(parameter, ir::Scalar::kAddr, binding.value);
   } else if (binding.place) {
-    build_.copy(parameter, *binding.place);
+    ask<Assignments>().copy_held(parameter, *binding.place, variable.type);
   } else if (binding.value.valid()) {
     build_.store(parameter, scalar(variable.type), binding.value);
   }
@@ -150,7 +154,12 @@ void Arguments::take_outputs(std::vector<Binding>& bindings,
     bool strings = is_string(types(), variable.type) && is_string(types(), binding.target->type) &&
                    wide(variable.type) == wide(binding.target->type);
     if (strings || variable.type == binding.target->type) {
-      build_.copy(binding.target->place, place_of(variable));
+      if (ir::holds_instance(types(), variable.type) &&
+          ask<Assignments>().refuse_copy(variable.type, binding.arg->span)) {
+        continue;
+      }
+      ask<Assignments>().copy_held(binding.target->place, place_of(variable),
+                                   binding.target->type);
       continue;
     }
     error(DiagnosticCode::kWrongArgument, binding.arg->span,

@@ -1,5 +1,6 @@
 // Standard functions on strings, and choices between values that are no scalars.
 #include "frontend/lower/standard_code.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
@@ -138,6 +139,12 @@ ir::Place StandardCode::extreme_string(const std::vector<ExprId>& args,
 ir::Place StandardCode::choose(const std::vector<ExprId>& args, const stdlib::FunctionRow& row,
                                ir::TypeId type) {
   bool select = row.id == FunctionId::kSel;
+  if (ir::holds_instance(types(), type)) {
+    error(DiagnosticCode::kNotAssignable, tree_[args[1]].span,
+          "instances of `" + sema_.report.type_text(type) + "` are no values to choose from",
+          "use IF, or choose between pointers to them");
+    return place(args[1]);
+  }
   ir::Place result = temporary_place(type);
   Typed selector =
       select ? Typed{value(args[0], elementary(ir::Kind::kBool)), elementary(ir::Kind::kBool)}

@@ -7,6 +7,7 @@
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types/types.h"
+#include "ir/types/parts.h"
 
 namespace frontend {
 namespace {
@@ -60,6 +61,12 @@ void Variables::resolve_variable(VarId id) {
     TypeUse use = ask<Types>().resolve_type(sema_.declared.pous[variable.pou].decl->result);
     variable.type = use.type;
     variable.init = use.init;
+    if (!ir::holds_instance(sema_.program.types, variable.type)) return;
+    error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
+          "the result of " + quoted(variable.name) + " holds an instance of a function block, as `" +
+              sema_.report.type_text(variable.type) + "`, but is made anew at each call",
+          "return a REFERENCE TO it, or copy it to a VAR_IN_OUT");
+    variable.type = {};
     return;
   }
   if (variable.takes_any) {
@@ -154,13 +161,15 @@ void Variables::check_placement(const Variable& variable) {
   }
   if (variable.section != VarSection::kInOut)
     ask<Objects>().check_instance(variable.type, variable.name.span);
-  bool holds_instance = type.kind == ir::Kind::kFunctionBlock;
+  // A block alone is a variable like others in functions of codesys and twincat.
+  const bool alone = type.kind == ir::Kind::kFunctionBlock;
+  const bool holds_instance = ir::holds_instance(sema_.program.types, variable.type);
   bool anew = !variable.each_call &&
               (variable.storage == Storage::kLocal || variable.section == VarSection::kTemp);
   if (holds_instance && anew && variable.section != VarSection::kInOut) {
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
-          quoted(variable.name) + " is an instance of `" + type.name +
-              "`, but is made anew at each call",
+          quoted(variable.name) + (alone ? " is an instance of `" : " holds instances, as `") +
+              sema_.report.type_text(variable.type) + "`, but is made anew at each call",
           "declare it in VAR of a function block or program, or pass it as VAR_IN_OUT");
   }
 }
