@@ -158,8 +158,7 @@ void Arguments::take_outputs(std::vector<Binding>& bindings,
           ask<Assignments>().refuse_copy(variable.type, binding.arg->span)) {
         continue;
       }
-      ask<Assignments>().copy_held(binding.target->place, place_of(variable),
-                                   binding.target->type);
+      ask<Assignments>().copy_held(binding.target->place, place_of(variable), binding.target->type);
       continue;
     }
     error(DiagnosticCode::kWrongArgument, binding.arg->span,
@@ -221,8 +220,7 @@ void Arguments::pass_default(const PouInfo& callee, const Variable& variable,
 
 // The code here has a value of the callee's unit, so it goes with another version of it no more.
 void Arguments::hold(const PouInfo& callee) {
-  const ir::PouId unit =
-      callee.owner == kNoPou ? callee.id : sema_.declared.pous[callee.owner].id;
+  const ir::PouId unit = callee.owner == kNoPou ? callee.id : sema_.declared.pous[callee.owner].id;
   std::vector<ir::PouId>& held = body_.out.taken_in;
   if (callee.library || !unit.valid() || unit == info_.id) return;
   if (std::find(held.begin(), held.end(), unit) == held.end()) held.push_back(unit);

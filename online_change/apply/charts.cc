@@ -82,7 +82,10 @@ void Charts::add(const ir::Image& old_image, const ir::Image& new_image, uint32_
     chart.steps.push_back(std::move(step));
   }
   add_new_steps(old_image, old_type, new_image, new_id, chart);
-  if (chart.steps.empty() && chart.added.empty()) return;
+  // A body that becomes a chart, or is none any more: no step of one goes on, there or back.
+  const bool ends = std::all_of(chart.steps.begin(), chart.steps.end(),
+                                [](const Step& step) { return step.next == kNone; });
+  if (chart.steps.empty() || (ends && chart.added.empty())) return;
   const bool any = std::any_of(chart.steps.begin(), chart.steps.end(),
                                [](const Step& step) { return step.goes; });
   const bool same = !any && chart.added.empty() &&

@@ -4,6 +4,7 @@
 
 #include "ir/types/handle.h"
 #include "online_change/diff/areas.h"
+#include "online_change/diff/reference_leaves.h"
 
 namespace online_change {
 namespace {

@@ -51,7 +51,8 @@ class PlaceMoves::Maker {
         area.new_segment = ir::area_segment(twin, new_.instances[twin].generation);
         area.pair = areas_pair(old_.instances[id].type, new_.instances[twin].type);
       }
-      const bool stays = area.new_segment == area.old_segment && out_.pairs_[area.pair].same;
+      const bool stays = area.new_segment == area.old_segment && out_.pairs_[area.pair].same &&
+                         out_.pairs_[area.pair].no_more.empty();
       out_.trivial_ = out_.trivial_ && stays;
     }
   }
@@ -71,7 +72,35 @@ class PlaceMoves::Maker {
     Pair pair = named(from, to);
     structure(pair, from, to, 0);
     add_moved(pair, from, to);
+    pair.no_more = lost_kinds(from, to);
     return areas_[{from.index, to.index}] = put(std::move(pair));
+  }
+
+  // What references may be declared to lead to, beside the type itself.
+  static std::vector<uint32_t> kinds_of(const ir::TypeTable& types,
+                                        const std::vector<uint32_t>& names, TypeId id) {
+    std::vector<uint32_t> out;
+    for (const TypeId one : types[id].interfaces) out.push_back(names[one.index]);
+    for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
+      id = types[id].kind == ir::Kind::kFunctionBlock ? types[id].base : TypeId();
+      if (!id.valid()) break;
+      out.push_back(names[id.index]);
+    }
+    return out;
+  }
+
+  // Of those that the new version still has.
+  std::vector<uint32_t> lost_kinds(TypeId from, TypeId to) const {
+    std::vector<uint32_t> lost = kinds_of(old_.types, out_.old_names_, from);
+    const std::vector<uint32_t> now = kinds_of(new_.types, out_.new_names_, to);
+    const auto is_among = [](const std::vector<uint32_t>& names, uint32_t name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    std::erase_if(lost, [&](uint32_t name) {
+      return name == out_.new_names_[to.index] || is_among(now, name) ||
+             !is_among(out_.new_names_, name);
+    });
+    return lost;
   }
 
   void add_moved(Pair& pair, TypeId from, TypeId to) {
@@ -263,6 +292,11 @@ Followed PlaceMoves::follow(uint64_t handle, Target target) const {
   uint32_t rest = ir::handle_offset(handle);
   const int32_t away = ir::handle_away(handle);
   const bool instance = rest == 0 && (away == 0 ? target.instance : away == ir::kWhole);
+  const std::vector<uint32_t>& lost = pairs_[area.pair].no_more;
+  if (instance && target.instance &&
+      std::find(lost.begin(), lost.end(), target.name) != lost.end()) {
+    return {0, true};
+  }
   if (pairs_[area.pair].same || instance) {
     return {ir::with_away(ir::make_handle(area.new_segment, rest), away), false};
   }
@@ -308,64 +342,6 @@ Followed PlaceMoves::follow(uint64_t handle, Target target) const {
     number = part->pair;
   }
   return {0, true};
-}
-
-namespace {
-
-// Offsets of references inside each type.
-class LeafFinder {
- public:
-  explicit LeafFinder(const ir::Image& image) : image_(image) {}
-
-  const std::vector<ReferenceLeaf>& inside(TypeId type, bool area, uint32_t depth) {
-    auto& known = area ? areas_ : values_;
-    const auto found = known.find(type.index);
-    if (found != known.end()) return found->second;
-    std::vector<ReferenceLeaf> out;
-    if (depth < base::kMaxTypeDepth) find(type, area, depth, out);
-    return known[type.index] = std::move(out);
-  }
-
- private:
-  void find(TypeId id, bool area, uint32_t depth, std::vector<ReferenceLeaf>& out) {
-    const ir::Type& type = image_.types[id];
-    if (image_.types.is_reference(id)) out.push_back({0, id});
-    if (type.kind == ir::Kind::kArray) {
-      const std::vector<ReferenceLeaf>& element = inside(type.base, false, depth + 1);
-      if (element.empty()) return;
-      const uint32_t stride = image_.layouts[type.base].size;
-      for (uint32_t at = 0; at + stride <= image_.layouts[id].size; at += stride) {
-        for (const ReferenceLeaf& leaf : element) out.push_back({at + leaf.at, leaf.type});
-      }
-    }
-    if (!area && !has_own_parts(image_.types, id)) return;
-    for (size_t i = 0; i < type.members.size(); ++i) {
-      const ir::Member& member = type.members[i];
-      if (member.section == ir::Section::kInOut || image_.types.is_instance(member.type)) continue;
-      const uint32_t at = image_.layouts[id].member_offsets[i];
-      for (const ReferenceLeaf& leaf : inside(member.type, false, depth + 1)) {
-        out.push_back({at + leaf.at, leaf.type});
-      }
-    }
-  }
-
-  const ir::Image& image_;
-  std::map<uint32_t, std::vector<ReferenceLeaf>> values_;
-  std::map<uint32_t, std::vector<ReferenceLeaf>> areas_;
-};
-
-}  // namespace
-
-std::vector<ReferenceLeaf> reference_leaves(const ir::Image& image) {
-  LeafFinder finder(image);
-  std::vector<ReferenceLeaf> out;
-  for (const ir::Instance& instance : image.instances) {
-    if (!instance.live) continue;
-    for (const ReferenceLeaf& leaf : finder.inside(instance.type, true, 0)) {
-      out.push_back({instance.data + leaf.at, leaf.type});
-    }
-  }
-  return out;
 }
 
 }  // namespace online_change

@@ -28,14 +28,6 @@ struct Followed {
   bool gone = false;  // what it named has no place in the new version
 };
 
-// A variable that holds a handle.
-struct ReferenceLeaf {
-  uint32_t at = 0;  // in data memory
-  ir::TypeId type;  // of the variable
-};
-// All of them but those in unions, by area. Cost: areas without any, and each one.
-std::vector<ReferenceLeaf> reference_leaves(const ir::Image& image);
-
 class PlaceMoves {
  public:
   // The version whose rules say what was moved between variables (moved_parts.h): kBack when the
@@ -78,10 +70,11 @@ class PlaceMoves {
     uint32_t new_name = 0;
     uint32_t old_size = 0;
     uint32_t new_size = 0;
-    uint32_t element = kNone;  // kArray
-    std::vector<Bounds> dims;  // kArray
-    std::vector<Part> parts;   // kStructure
-    std::vector<Part> moved;   // of an area: to another place than `parts` say; not sorted
+    uint32_t element = kNone;       // kArray
+    std::vector<Bounds> dims;       // kArray
+    std::vector<Part> parts;        // kStructure
+    std::vector<Part> moved;        // of an area: to another place than `parts` say; not sorted
+    std::vector<uint32_t> no_more;  // of an area: names of bases and interfaces that it has lost
   };
   struct Area {
     uint32_t old_segment = 0;  // 0: not live

@@ -3,6 +3,7 @@
 #include "ir/bytecode/bools.h"
 #include "online_change/diff/fast_conversion.h"
 #include "online_change/diff/place_moves.h"
+#include "online_change/diff/reference_leaves.h"
 
 namespace online_change {
 

@@ -13,6 +13,7 @@
 #include "online_change/diff/instance_match.h"
 #include "online_change/diff/migrations.h"
 #include "online_change/diff/place_moves.h"
+#include "online_change/diff/reference_leaves.h"
 #include "online_change/diff/type_diff.h"
 #include "online_change/plan/area_steps.h"
 #include "online_change/store/retain_map.h"

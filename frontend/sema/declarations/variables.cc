@@ -63,7 +63,8 @@ void Variables::resolve_variable(VarId id) {
     variable.init = use.init;
     if (!ir::holds_instance(sema_.program.types, variable.type)) return;
     error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
-          "the result of " + quoted(variable.name) + " holds an instance of a function block, as `" +
+          "the result of " + quoted(variable.name) +
+              " holds an instance of a function block, as `" +
               sema_.report.type_text(variable.type) + "`, but is made anew at each call",
           "return a REFERENCE TO it, or copy it to a VAR_IN_OUT");
     variable.type = {};

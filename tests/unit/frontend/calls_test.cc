@@ -13,7 +13,7 @@ TEST(Functions, FormalPositionalMixedDefaults) {
   Controlled run(
       std::string(kScale) +
       "PROGRAM P VAR a, b, c : INT; o : BOOL; n : DINT; w : WORD; END_VAR\n"
-      "a := Scale(x := 10, n := n); b := Scale(30, 4, n, o); c := Scale(5, n := n, over => w.3);\n"
+      "a := Scale(x := 10, n := n); b := Scale(30, 4, o, n); c := Scale(5, n := n, over => w.3);\n"
       "Scale(n := n, x := 1); END_PROGRAM");
   EXPECT_EQ(run.scan(), "");
   EXPECT_EQ(run.number("P.a"), 20);

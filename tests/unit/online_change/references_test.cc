@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "online_change/diff/place_moves.h"
+#include "online_change/diff/reference_leaves.h"
 #include "online_change/plan/pause.h"
 #include "tests/unit/online_change/plant.h"
 
