@@ -6,6 +6,12 @@ for i in $(seq 9); do
   printf "TEST 'number %s' ASSERT_TRUE(TRUE); END_TEST\n" "$i"
 done >nine_test.st
 
+# A test has a text for its name, in every dialect.
+printf "TEST 'with  blanks, a__b' ASSERT_TRUE(TRUE); END_TEST\n" >iec_test.st
+expect 0 stc test iec_test.st --dialect iec
+said '^PASS .*a__b'
+rm iec_test.st
+
 # The seed is said, and gives the same order again, on any machine.
 expect 0 stc test nine_test.st --shuffle
 seed=$(sed -n 's/^this order again: --seed //p' out)

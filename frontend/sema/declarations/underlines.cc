@@ -15,7 +15,7 @@ void Interfaces::check_underlines() {
     if (variable.decl != nullptr && !variable.hidden) check(variable.name);
   }
   for (const PouInfo& pou : sema_.declared.pous) {
-    if (pou.meaning == nullptr) check(pou.decl->name);
+    if (pou.meaning == nullptr && !pou.test) check(pou.decl->name);  // a test has a text
   }
   for (const TypeDecl& type : sema_.tree.types) check(type.name);
   for (const Spec& spec : sema_.tree.specs) {
