@@ -98,6 +98,15 @@ void CaseCode::report_missing_labels(const Stmt& stmt, ir::TypeId type,
           "add it, or an ELSE");
 }
 
+// A real number, which some dialects would round.
+bool CaseCode::check_whole(ExprId label) {
+  const Note& note = infer(label);
+  if (!note.type.valid() || !traits_of(types(), note.type).real) return true;
+  error(DiagnosticCode::kTypeMismatch, tree_[label].span, "a label is a whole number or a name",
+        "use IF for ranges of real numbers");
+  return false;
+}
+
 std::vector<CaseCode::Interval> CaseCode::case_intervals(const Stmt& stmt, ir::TypeId type,
                                                          const std::vector<ir::BlockId>& arms) {
   std::vector<Interval> intervals;
@@ -109,6 +118,7 @@ std::vector<CaseCode::Interval> CaseCode::case_intervals(const Stmt& stmt, ir::T
     const CaseArm& arm = tree_.cases[stmt.arms.first + i];
     for (uint32_t k = 0; k < arm.labels.count; ++k) {
       const CaseLabel& label = tree_.labels[arm.labels.first + k];
+      if (!check_whole(label.low) || (label.high.valid() && !check_whole(label.high))) continue;
       auto low = ask<Constants>().fold_bits(label.low, type);
       auto high = label.high.valid() ? ask<Constants>().fold_bits(label.high, type) : low;
       if (!low || !high) continue;

@@ -18,6 +18,7 @@ class CaseCode : public BodyPhase {
   struct Interval;
   struct CaseLeaf;
   struct CaseTests;
+  bool check_whole(ExprId label);
   std::vector<Interval> case_intervals(const Stmt& stmt, ir::TypeId type,
                                        const std::vector<ir::BlockId>& arms);
   void report_missing_labels(const Stmt& stmt, ir::TypeId type,

@@ -87,6 +87,15 @@ ir::ValueId Values::value(ExprId id, ir::TypeId target) {
   if (is_interface(types(), target) && types().is_instance(note.type)) {
     return ask<References>().interface_value(id, target);
   }
+  const Traits wanted = traits_of(types(), target);
+  const bool taken = is_interface(types(), target) ||
+                     (sema_.options.dialect != Dialect::kIec && (wanted.integer || wanted.bits));
+  if (note.constant && note.flex == Flex::kNull && !taken) {
+    error(DiagnosticCode::kTypeMismatch, expr.span,
+          "NULL does not go with `" + sema_.report.type_text(target) + "`",
+          "it is for pointers, references and interfaces");
+    return code_.zero(target);
+  }
   if (is_known(note)) {
     auto bits = ask<Constants>().fold_bits(id, target,
                                            body_.evaluating ? Known::kInitially : Known::kConstant);
