@@ -24,6 +24,7 @@ std::string value_text(const ir::Image& image, const ir::Symbol& symbol,
   return shortened(ir::format_value(image, symbol, memory));
 }
 
+constexpr const char* kOutside = "loses its elements outside of the new bounds";
 constexpr const char* kConstantNow = "is replaced by a constant";
 constexpr const char* kInputNow = "is replaced by an input";
 
@@ -143,6 +144,7 @@ uint64_t describe_lost(const LostPlaces& places, const ir::Image& old_image,
       if (rows.size() >= most || !before.ok()) continue;
       rows.push_back(lost_value(std::move(path), old_image, *before, new_image,
                                 place.dropped || !next.ok() ? nullptr : &*next, memory));
+      if (place.outside) rows.back().what = kOutside;
     }
   }
   return count;

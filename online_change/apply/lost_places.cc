@@ -81,6 +81,7 @@ class Finder {
     const uint32_t id = instance_of(row.path, inside);
     LostPlaces::Row place{row.fate == Fate::kDropped, group_of_[id], std::move(inside)};
     place.elements = elements_in(place.inside);
+    place.outside = row.reason.starts_with(kOutsideBounds);
     const base::Result<ir::Symbol> next = ir::find_symbol(new_names_.of(new_), row.path);
     place.constant = row.fate == Fate::kInitialised && next.ok() && next->constant;
     out_.rows.push_back(std::move(place));

@@ -18,6 +18,7 @@ struct LostPlaces {
     uint32_t group = 0;  // the instances that share it
     std::string inside;  // "" for the whole instance, else ".member" and so on; "[0..9].x": several
     uint64_t elements = 1;  // that `inside` stands for
+    bool outside = false;   // only elements outside of the new bounds
     bool constant = false;  // what the new version has there: only another value is a loss
   };
   std::vector<Row> rows;

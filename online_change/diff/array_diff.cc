@@ -167,8 +167,8 @@ TypeDiff TypeDiffer::compare_arrays(TypeId old_type, TypeId new_type) {
   }
   uint64_t dropped = (slots ? 0 : leaves(old_, old_type)) - old_element_leaves * common;
   if (dropped != 0) {
-    diff.rows.push_back({Fate::kDropped, "", old_text, new_text, true,
-                         "elements outside the new bounds", dropped});
+    diff.rows.push_back(
+        {Fate::kDropped, "", old_text, new_text, true, std::string(kOutsideBounds), dropped});
   }
   join(diff.ops);
   diff.same = element.same && from.dims == to.dims && old_size == new_size && is_identity(diff.ops);

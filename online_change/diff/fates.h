@@ -29,6 +29,8 @@ struct FateRow {
   std::string old_path = {};  // of what was moved between variables: its path in the old version
 };
 
+// The reason of a row of an array that goes on, with fewer elements.
+inline constexpr std::string_view kOutsideBounds = "elements outside the new bounds";
 // Ends the reason of a row that stands for several variables or instances.
 inline constexpr std::string_view kMoreLikeIt = " more like it";
 inline bool stands_for_several(const FateRow& row) {
