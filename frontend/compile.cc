@@ -114,6 +114,7 @@ void check_uses(Sema& sema) {
   Objects(sema).check_recursion();
   CommonUses(sema).check_output_tasks();
   CommonUses(sema).check_call_instances();
+  CommonUses(sema).check_second_coils();
   report_unused(Phase(sema));
 }
 
@@ -124,6 +125,7 @@ void check_whole(Sema& sema) {
   sema.program.overrides = ir::find_overrides(sema.program);
   CommonUses(sema).check_output_tasks();
   CommonUses(sema).check_call_instances();
+  CommonUses(sema).check_second_coils();
   SharedAddresses(sema).check();
   report_unused(Phase(sema));
 }

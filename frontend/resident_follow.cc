@@ -32,7 +32,8 @@ struct PutAway {
 };
 
 bool is_unused_message(const base::Diagnostic& message) {
-  return message.code == DiagnosticCode::kUnusedVariable ||
+  return message.code == DiagnosticCode::kSecondCoil ||
+         message.code == DiagnosticCode::kUnusedVariable ||
          message.code == DiagnosticCode::kNeverWritten ||
          message.code == DiagnosticCode::kResultNeverAssigned;
 }

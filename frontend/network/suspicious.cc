@@ -74,24 +74,16 @@ void report_second_coils(const Body& body, base::Diagnostics& diagnostics) {
     bool told = false;
   };
   std::map<std::string, Coils> coils;
-  for (const Network& network : body.networks) {
-    if (network.disabled) continue;
-    for (const Element& element : network.elements) {
-      const bool plain =
-          element.modifier == Modifier::kNone || element.modifier == Modifier::kNegated;
-      if (element.kind != Kind::kCoil || !plain) continue;
-      const std::string place = fixed_place(element.operand.text);
-      if (place.empty()) continue;
-      const auto [found, fresh] = coils.emplace(place, Coils{element.operand.span});
-      if (fresh || std::exchange(found->second.told, true)) continue;
-      base::Diagnostic message{Code::kSecondCoil,
-                               element.operand.span,
-                               "`" + element.operand.text + "` has a coil before this one, " +
-                                   "which has no effect then",
-                               "join both conditions in one rung, or use (S) and (R)",
-                               {{found->second.first, "its first coil"}}};
-      diagnostics.add(std::move(message));
-    }
+  for (const PlainCoil& coil : plain_coils(body)) {
+    const auto [found, fresh] = coils.emplace(coil.place, Coils{coil.element->operand.span});
+    if (fresh || std::exchange(found->second.told, true)) continue;
+    base::Diagnostic message{Code::kSecondCoil,
+                             coil.element->operand.span,
+                             "`" + coil.element->operand.text + "` has a coil before this one, " +
+                                 "which has no effect then",
+                             "join both conditions in one rung, or use (S) and (R)",
+                             {{found->second.first, "its first coil"}}};
+    diagnostics.add(std::move(message));
   }
 }
 
@@ -143,8 +135,24 @@ void report_boxes_without_power(const Body& body, base::Diagnostics& diagnostics
 
 }  // namespace
 
+std::vector<PlainCoil> plain_coils(const Body& body) {
+  std::vector<PlainCoil> out;
+  if (body.language != Language::kLadder || may_skip(body)) return out;
+  for (const Network& network : body.networks) {
+    if (network.disabled) continue;
+    for (const Element& element : network.elements) {
+      const bool plain =
+          element.modifier == Modifier::kNone || element.modifier == Modifier::kNegated;
+      if (element.kind != Kind::kCoil || !plain) continue;
+      std::string place = fixed_place(element.operand.text);
+      if (!place.empty()) out.push_back({&element, std::move(place)});
+    }
+  }
+  return out;
+}
+
 void report_suspicious(const Body& body, base::Diagnostics& diagnostics) {
-  if (body.language == Language::kLadder && !may_skip(body)) report_second_coils(body, diagnostics);
+  report_second_coils(body, diagnostics);
   report_boxes_without_power(body, diagnostics);
 }
 

@@ -2,10 +2,21 @@
 // counter or edge box whose input gets no power (W0036).
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "base/diagnostics.h"
 #include "frontend/network/network.h"
 
 namespace frontend::network {
+
+// A coil ( ) or (/) that writes the same place in every scan.
+struct PlainCoil {
+  const Element* element;  // of the body
+  std::string place;       // its operand, folded, without blanks
+};
+// None of a body with JMP or RETURN, which may leave coils out on purpose.
+std::vector<PlainCoil> plain_coils(const Body& body);
 
 void report_suspicious(const Body& body, base::Diagnostics& diagnostics);
 

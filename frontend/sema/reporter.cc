@@ -74,9 +74,9 @@ void Reporter::error(const PouScope& scope, DiagnosticCode code, base::SourceSpa
 }
 
 void Reporter::warning(DiagnosticCode code, base::SourceSpan span, std::string text,
-                       std::string fix) {
+                       std::string fix, std::vector<base::DiagnosticNote> notes) {
   if (silenced_ != 0 || library_.holds(span)) return;
-  diagnostics_.add(code, span, std::move(text), std::move(fix));
+  diagnostics_.add({code, span, std::move(text), std::move(fix), std::move(notes)});
 }
 
 void Reporter::allow_extension(const PouScope& scope, std::string_view what, base::SourceSpan span,

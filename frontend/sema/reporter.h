@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/source.h"
@@ -28,7 +29,8 @@ class Reporter {
   // `scope`: whose names were visible there.
   void error(const PouScope& scope, DiagnosticCode code, base::SourceSpan span, std::string text,
              Fix fix = {});
-  void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {});
+  void warning(DiagnosticCode code, base::SourceSpan span, std::string text, std::string fix = {},
+               std::vector<base::DiagnosticNote> notes = {});
   // Reports an implicit conversion that may lose; false when the dialect forbids it.
   bool allow_narrowing(const PouScope& scope, ir::TypeId from, ir::TypeId to,
                        base::SourceSpan span);

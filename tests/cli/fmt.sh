@@ -28,6 +28,17 @@ cmp a.st want.st || fail "not formatted"
 [ "$(stat -c %a a.st)" = 640 ] || fail "permissions changed"
 expect 0 stc fmt --check a.st
 
+# R-02: what `stc check` is given may be given here; the layout is the same, a mistake is one.
+cp a.st same.st
+expect 0 stc fmt --dialect iec --define A=1 --resource R --name n -j2 -Werror same.st
+cmp same.st want.st || fail "options of the compiler changed the layout"
+expect 2 stc fmt --dialect pascal same.st
+said 'pascal'
+expect 2 stc fmt --jobs 0 same.st
+said '--jobs 0 is not 1 to'
+expect 2 stc fmt --define =1 same.st
+expect 2 stc fmt -W W9999=off same.st
+
 expect 1 stc fmt bad.st
 said 'bad\.st:1:16: error\[E1005\]'
 cmp bad.st bad.orig || fail "a file with errors was changed"

@@ -24,6 +24,7 @@ constexpr tools::OptionRow kFormatOptions[] = {
     {"--diff", nullptr, "write nothing; show what would change, exit 1 when there is anything"},
     {"--stdin", nullptr, "read one source from standard input, write it to standard output"},
     {"--format", "FORM", "text (default) or json: how --check reports", "text|json"},
+    TOOLS_COMPILE_OPTIONS,
 };
 constexpr tools::Command kFormatCommand{
     "fmt", "PATHS...", "Lays sources out, in place; [format] of stc.toml says how.", kFormatOptions,
@@ -181,8 +182,15 @@ base::Status usage(const tools::Options& options) {
   return base::Error{base::Refusal::kUsage, text};
 }
 
+// The layout is the same for all of them, but a mistake in one is a mistake.
+base::Status check_compile_options(const tools::Options& options) {
+  Project unused;
+  return apply_compile_options(options, unused);
+}
+
 int run_format(const tools::Options& options) {
   base::Status status = usage(options);
+  if (status.ok()) status = check_compile_options(options);
   if (!status.ok()) return tools::refuse("stc", status.error());
   Formatter formatter(options);
   if (options.has("--stdin")) {

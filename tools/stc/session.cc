@@ -66,6 +66,27 @@ static base::Result<std::string> project_here() {
   return folder.empty() ? "." : folder;
 }
 
+base::Status apply_compile_options(const tools::Options& options, Project& project) {
+  if (options.has("--resource")) project.compile.resource = options.text("--resource");
+  if (const auto mistake = mistake_in(options.all("--define"))) {
+    return base::Error{base::Refusal::kUsage, "--define: " + mistake->what};
+  }
+  for (std::string& define : options.all("--define")) {
+    project.compile.defines.push_back(std::move(define));
+  }
+  if (options.has("--name")) {
+    project.name = options.text("--name");
+    if (base::has_control(project.name)) {
+      return base::Error{base::Refusal::kUsage, "--name: a name has no control characters"};
+    }
+    project.compile.name = project.name;
+  }
+  auto jobs = jobs_option(options);
+  if (!jobs.ok()) return jobs.error();
+  project.jobs = *jobs;
+  return apply_warning_options(options, project.warnings);
+}
+
 base::Result<Project> open_project(const tools::Options& options,
                                    const std::vector<std::string>& paths) {
   if (paths.empty()) {
@@ -76,32 +97,13 @@ base::Result<Project> open_project(const tools::Options& options,
   if (!dialect.ok()) return dialect.error();
   base::Result<Project> project = load_project(paths, *dialect);
   if (!project.ok()) return project;
-  if (options.has("--resource")) project->compile.resource = options.text("--resource");
-  if (const auto mistake = mistake_in(options.all("--define"))) {
-    return base::Error{base::Refusal::kUsage, "--define: " + mistake->what};
-  }
-  for (std::string& define : options.all("--define")) {
-    project->compile.defines.push_back(std::move(define));
-  }
-  if (options.has("--name")) {
-    project->name = options.text("--name");
-    if (base::has_control(project->name)) {
-      return base::Error{base::Refusal::kUsage, "--name: a name has no control characters"};
-    }
-    project->compile.name = project->name;
-  }
-  if (auto warnings = apply_warning_options(options, project->warnings); !warnings.ok()) {
-    return warnings.error();
-  }
+  if (auto set = apply_compile_options(options, *project); !set.ok()) return set.error();
   silence_warnings(*project);
   auto passes = passes_option(options);
   if (!passes.ok()) return passes.error();
   project->passes = *passes;
   if (options.has("--embed-sources")) project->embed_sources = true;
   project->build_options = build_options_of(options, *project);
-  auto jobs = jobs_option(options);
-  if (!jobs.ok()) return jobs.error();
-  project->jobs = *jobs;
   return project;
 }
 

@@ -21,6 +21,8 @@ namespace stc {
 // Loads the project named by `paths` with the options above.
 base::Result<Project> open_project(const tools::Options& options,
                                    const std::vector<std::string>& paths);
+// What TOOLS_COMPILE_OPTIONS say, but for the dialect, which the sources are found with.
+base::Status apply_compile_options(const tools::Options& options, Project& project);
 // Warnings are what the project makes of them; the project must outlive the answer.
 base::Diagnostics diagnostics_of(const Project& project);
 // Reads anew where the sources silence warnings: after a file was replaced.

@@ -36,6 +36,8 @@ class CommonUses : public Phase {
 
   // Each byte of %Q has one writer among the tasks (E5003).
   void check_output_tasks();
+  // Each global has one coil among the ladders of the programs (W0035; second_coils.cc).
+  void check_second_coils();
   // Instances that each call makes anew: no two calls meet (E2016; declarations/call_instances.cc).
   void check_call_instances();
   // The uses of the resource that is compiled; nothing where there is only one. Marks the globals
