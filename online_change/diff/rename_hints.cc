@@ -4,6 +4,7 @@
 #include <map>
 #include <unordered_set>
 
+#include "ir/types/old_names.h"
 #include "online_change/diff/type_diff.h"
 
 namespace online_change {
@@ -40,6 +41,21 @@ std::string_view seen_from(const std::string& name, const std::string& other) {
   return std::string_view(name).substr(same ? list + 1 : 0);
 }
 
+// The old name of a rule that leads into a function block of the old area; "" when none does.
+std::string_view name_in_block(const ir::TypeTable& types, const ir::Type& area,
+                               const std::string& rule) {
+  for (const std::string_view name : ir::old_names_of(rule)) {
+    const std::string_view head = name.substr(0, name.find_first_of(".["));
+    if (head.size() == name.size()) continue;
+    for (const Member& member : area.members) {
+      ir::TypeId type = member.type;
+      while (types[type].kind == ir::Kind::kArray) type = types[type].base;
+      if (ir::same_name(member.name, head) && types.is_instance(type)) return name;
+    }
+  }
+  return {};
+}
+
 // As a part of the name of a function.
 std::string plain(std::string name) {
   std::replace(name.begin(), name.end(), '.', '_');
@@ -66,6 +82,21 @@ void TypeDiffer::propose_migration(TypeDiff& diff, ir::TypeId old_type, ir::Type
                     before.name + "'} can take it over";
       return;
     }
+  }
+}
+
+// X2: a rule that could not be followed is no rule that has done its work.
+void TypeDiffer::explain_rules(TypeDiff& diff, ir::TypeId old_area, ir::TypeId new_area) const {
+  for (FateRow& row : diff.rows) {
+    if (row.fate != Fate::kInitialised || row.reason != "new" || row.path.empty()) continue;
+    const int32_t number = new_.types.find_member(new_area, row.path.substr(1));
+    if (number < 0) continue;
+    const ir::OldNameId rule = new_.types[new_area].members[size_t(number)].old_name;
+    if (!rule.valid() || !new_.types.knows(rule)) continue;
+    const std::string_view name =
+        name_in_block(old_.types, old_.types[old_area], new_.types.old_name(rule));
+    if (name.empty()) continue;
+    row.reason += ", not renamed: `" + std::string(name) + "` is in a function block";
   }
 }
 

@@ -263,7 +263,10 @@ TypeDiff TypeDiffer::compare_members(TypeId old_type, TypeId new_type, bool is_a
     if (gone && from.members[i].section != Section::kInOut)
       add_dropped_member(diff, old_type, i, new_type);
   }
-  if (is_area) move_parts(diff, old_type, new_type);
+  if (is_area) {
+    move_parts(diff, old_type, new_type);
+    if (!back_) explain_rules(diff, old_type, new_type);
+  }
   if (!back_ && ir::same_name(from.name, to.name)) propose_renames(diff, old_type, new_type);
   if (!back_) propose_migration(diff, old_type, new_type);
   join(diff.ops);

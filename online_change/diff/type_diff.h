@@ -116,6 +116,7 @@ class TypeDiffer {
   void move_parts(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type);
   uint64_t count_leaves(const ir::Image& image, ir::TypeId type);
   std::string rename_note(const ir::Member& old_member) const;
+  void explain_rules(TypeDiff& diff, ir::TypeId old_area, ir::TypeId new_area) const;
   void propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
   void propose_migration(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
   Conversion conversion_of(ir::TypeId old_type, ir::TypeId new_type) const;
