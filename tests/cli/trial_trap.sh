@@ -51,6 +51,7 @@ said 'undone .*by controller'
 expect 0 stvm status --dir plc
 said '^r: running$|: running$'
 said 'change +idle'
+said '^alarm: E1 undone by the controller at 2.*: a trap on trial: .*division'
 expect 0 stvm get Main.level --dir plc
 said '=4711'
 expect 7 stvm get Main.k --dir plc

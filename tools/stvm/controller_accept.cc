@@ -33,6 +33,7 @@ base::Status ControllerService::make_permanent() {
   complain(taken.ok() ? keeper_.save(after) : taken);
   note_accepted(trials_.size(), controller_.verified().digest(), watched);
   not_undone_.clear();
+  given_back_.clear();
   probation_.reset();
   return accepted;
 }

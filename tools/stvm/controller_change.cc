@@ -297,6 +297,7 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Ex
   note_switch(online_change::Event::kUndone, undone, **report, predicted_ns,
               undone_text(undone_.back().edit.name, left_out, why));
   not_undone_.clear();
+  given_back_.clear();
   forget_rehearsal();
   probation_.reset();
   ++edition_;
@@ -313,6 +314,7 @@ void ControllerService::note_edit(Trial trial, const online_change::SwitchReport
   } else {
     undone_.pop_back();
   }
+  given_back_.clear();
   trial.edit.cycle = report.cycle_after;
   trials_.push_back(std::move(trial));
   changed_by_ = who_;

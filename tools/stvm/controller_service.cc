@@ -213,6 +213,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
   report.alarms = start_.alarms;
   if (!start_.fault.empty()) report.alarms.push_back(start_.fault);
   if (!not_undone_.empty()) report.alarms.push_back(not_undone_);
+  if (!given_back_.empty()) report.alarms.push_back(given_back_);
   if (const auto unsaved = keeper_.unsaved()) {
     report.alarms.push_back("retained values are not being saved since " +
                             time_text(unsaved->since_ns) + ": " + unsaved->why);

@@ -342,6 +342,7 @@ class ControllerService : public vm::Service {
   std::optional<online_change::EveryFate> every_;     // of the same
   std::vector<online_change::JournalEntry> history_;  // that pages of the journal are of
   std::string not_undone_;                            // why the automatic undo failed: an alarm
+  std::string given_back_;                            // what was undone by itself: an alarm
   std::optional<Probation> probation_;                // in its first cycles
   TrialGuard guard_;                                  // of the trial of a roll-out
   online_change::StoredImage before_;                 // that pages of kBefore are of

@@ -129,8 +129,10 @@ void ControllerService::give_back(const std::string& why) {
   who_ = "controller";
   probation_.reset();
   const uint64_t chain = trials_.back().chain;
+  std::string edits;
   Answer undone = base::Bytes();
   do {
+    edits += (edits.empty() ? "" : ", ") + trials_.back().edit.name;
     vm::Request request{.command = vm::Command::kUndo};
     request.expected = controller_.verified().digest();
     request.edition = edition_;
@@ -143,7 +145,10 @@ void ControllerService::give_back(const std::string& why) {
       undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();
     }
   } while (undone.ok() && chain != 0 && !trials_.empty() && trials_.back().chain == chain);
-  if (undone.ok()) return;
+  if (undone.ok()) {
+    given_back_ = edits + " undone by the controller at " + time_text(wall_time_()) + ": " + why;
+    return;
+  }
   not_undone_ = "the version on trial was not undone after " + why + ": " +
                 base::to_string(undone.error()) + "; `stvm undo` tries again";
   // No boundary came: it is tried again.
