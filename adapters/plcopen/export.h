@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adapters/xml/imported.h"
 #include "frontend/parse/tree.h"
@@ -28,7 +29,8 @@ struct ExportInput {
   // What is kept of documents that were imported and are written again: drawings with their places
   // and ids, by POU or POU.Action, and addData that nobody understood, by POU.
   const xml::Kept* kept = nullptr;
-  bool with_sources = true;  // their text, for import() alone
+  bool with_sources = true;               // their text, for import() alone
+  std::vector<std::string> defines = {};  // what the tree was made with, for {IF ...}
 };
 
 // The whole document, in UTF-8.

@@ -2,7 +2,11 @@
 #include <algorithm>
 
 #include "adapters/plcopen/writer.h"
+#include "base/name_case.h"
+#include "frontend/lex/active_text.h"
+#include "frontend/lex/declaration_index.h"
 #include "frontend/lex/lexer.h"
+#include "frontend/lex/pragma.h"
 
 namespace plcopen {
 
@@ -19,10 +23,32 @@ void Writer::fail(base::SourceSpan at, std::string text) {
                    "write it in another way, or export without --without-sources");
 }
 
+// What is left out is nobody's text. Positions are those of the sources.
+std::string_view Writer::text_of(uint32_t file) const {
+  return texts_[file] ? *texts_[file] : in_.sources.text(file);
+}
+
+void Writer::read_texts() {
+  const frontend::DeclarationIndex declarations(in_.sources);
+  frontend::LexOptions options;
+  options.defines = in_.defines;
+  options.declarations = &declarations;
+  for (uint32_t file = 0; file < in_.sources.file_count(); ++file) {
+    texts_.push_back(std::nullopt);
+    if (!in_.sources.is_source(file)) continue;
+    texts_.back() = frontend::active_text(in_.sources, file, options);
+    if (!texts_.back() || in_.with_sources) continue;
+    const base::SourcePos begin = in_.sources.begin(file);
+    diagnostics_.add(base::DiagnosticCode::kXmlLeftOut, {begin, {begin.offset + 1}},
+                     "what {IF ...} leaves out is not in the document",
+                     "leave --without-sources out, and `stc import` gets it back");
+  }
+}
+
 std::string_view Writer::slice(base::SourceSpan span) const {
   const uint32_t file = in_.sources.file_of(span.begin);
   if (file == in_.sources.file_count() || span.end < span.begin) return {};
-  std::string_view text = in_.sources.text(file);
+  std::string_view text = text_of(file);
   const uint32_t begin = span.begin.offset - in_.sources.begin(file).offset;
   return text.substr(begin, span.end.offset - span.begin.offset);
 }
@@ -46,7 +72,7 @@ std::string Writer::flat(base::SourceSpan span) const {
 std::string Writer::comment_before(base::SourcePos begin) const {
   const uint32_t file = in_.sources.file_of(begin);
   if (file == in_.sources.file_count()) return {};
-  std::string_view text = in_.sources.text(file);
+  std::string_view text = text_of(file);
   text = text.substr(0, begin.offset - in_.sources.begin(file).offset);
   text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
   if (text.ends_with("TYPE")) {
@@ -63,7 +89,7 @@ std::string Writer::comment_before(base::SourcePos begin) const {
 std::string Writer::comment_behind(base::SourcePos end) const {
   const uint32_t file = in_.sources.file_of(end);
   if (file == in_.sources.file_count()) return {};
-  std::string_view text = in_.sources.text(file);
+  std::string_view text = text_of(file);
   text = text.substr(std::min<size_t>(end.offset - in_.sources.begin(file).offset, text.size()));
   std::string_view line = text.substr(0, text.find('\n'));
   line = xml::trimmed(line);
@@ -104,6 +130,21 @@ TokenKind end_of_member(TokenKind kind) {
   }
 }
 
+// `text` without its attributes: those in front of a member are the member's.
+std::string without_attributes(std::string_view text) {
+  base::Diagnostics unheard;
+  std::string out;
+  size_t from = 0;
+  for (const base::SourceSpan& pragma : frontend::lex(text, {0}, unheard).pragmas) {
+    const size_t begin = pragma.begin.offset;
+    const size_t end = pragma.end.offset;
+    if (!frontend::read_attribute(text.substr(begin, end - begin))) continue;
+    out += text.substr(from, begin - from);
+    from = end;
+  }
+  return out += text.substr(from);
+}
+
 }  // namespace
 
 // Tokens tell: members end with their END.
@@ -139,7 +180,9 @@ Writer::Pieces Writer::pieces(base::SourceSpan span, base::SourcePos head_end) c
     const TokenKind member_end = end_of_member(tokens[at].kind);
     const bool member = member_end != TokenKind::kEnd && frontend::is_name(tokens[at + 1].kind);
     if (!member) continue;
-    out.body += text.substr(body_from, tokens[at].begin - body_from);
+    const size_t before = std::max<size_t>(body_from, tokens[at - 1].begin + tokens[at - 1].length);
+    out.body += text.substr(body_from, before - body_from);
+    out.body += without_attributes(text.substr(before, tokens[at].begin - before));
     while (at < last && tokens[at].kind != member_end) ++at;
     if (at + 1 < last && tokens[at + 1].kind == TokenKind::kSemicolon) ++at;
     body_from = tokens[at].begin + tokens[at].length;
@@ -151,7 +194,7 @@ Writer::Pieces Writer::pieces(base::SourceSpan span, base::SourcePos head_end) c
 // After the head, up to END_TRANSITION. `list`: instructions.
 std::string Writer::condition_of(const frontend::ChartTransition& transition, bool& list) const {
   const uint32_t file = in_.sources.file_of(transition.span.end);
-  std::string_view text = in_.sources.text(file);
+  std::string_view text = text_of(file);
   text = text.substr(transition.span.end.offset - in_.sources.begin(file).offset);
   base::Diagnostics unheard;
   // A condition is short; the rest of the file is not looked at.
@@ -189,7 +232,7 @@ void Writer::put_text(Node parent, const char* language, const std::string& text
   for (std::string_view rest = all; !rest.empty();) {
     std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    if (line.ends_with("\r")) line.remove_suffix(1);
+    line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
     out += std::string(line.substr(std::min(least, line.size()))) + (rest.empty() ? "" : "\n");
   }
   put_formatted(parent.append_child(language), out.empty() ? " " : out);  // no text is none to them
@@ -235,15 +278,48 @@ void Writer::put_declaration(Node owner, const std::string& text) {
   xhtml.append_child(pugi::node_pcdata).set_value(text.c_str());
 }
 
+// As sources say it.
+static std::string pragma_of(const frontend::Attribute& attribute) {
+  std::string name(attribute.name.text);
+  const auto quoted = [](std::string_view text) { return "'" + std::string(text) + "'"; };
+  std::string value = attribute.has_value ? " := " + quoted(attribute.value) : "";
+  if (base::same_name(name, frontend::kRenamedAttribute)) {
+    name += (attribute.part.empty() ? "" : " " + quoted(attribute.part)) + " from";
+  } else if (base::same_name(name, frontend::kMigrationAttribute)) {
+    name += " of";
+    if (!attribute.from.empty()) value += ", from := " + quoted(attribute.from);
+    if (attribute.marked) value += ", inverse";
+  } else {
+    name = "attribute " + quoted(name);
+  }
+  return "{" + name + value + "}\n";
+}
+
 std::string Writer::attribute_text(frontend::Range32 attributes) const {
   std::string out;
   for (uint32_t i = 0; i < attributes.count; ++i) {
-    const frontend::Attribute& each = tree_.attributes[attributes.first + i];
-    out += "{attribute '" + std::string(each.name.text) + "'";
-    if (each.has_value) out += " := '" + std::string(each.value) + "'";
-    out += "}\n";
+    out += pragma_of(tree_.attributes[attributes.first + i]);
   }
   return out;
+}
+
+// Rules have words of their own (X2), and are attributes that mean nothing to others:
+// `renamed .x from` := "b, a", `migration of` := "B, from A, inverse". vendor.cc reads them.
+static std::pair<std::string, std::string> name_and_value(const frontend::Attribute& attribute) {
+  std::string name(attribute.name.text);
+  std::string value(attribute.value);
+  if (base::same_name(name, frontend::kRenamedAttribute)) {
+    name += (attribute.part.empty() ? "" : " " + std::string(attribute.part)) + " from";
+    value.clear();
+    for (std::string_view old_name : frontend::quoted_texts(attribute.value)) {
+      value += (value.empty() ? "" : ", ") + std::string(old_name);
+    }
+  } else if (base::same_name(name, frontend::kMigrationAttribute)) {
+    name += " of";
+    if (!attribute.from.empty()) value += ", from " + std::string(attribute.from);
+    if (attribute.marked) value += ", inverse";
+  }
+  return {std::move(name), std::move(value)};
 }
 
 void Writer::put_attributes(Node owner, frontend::Range32 attributes) {
@@ -251,9 +327,10 @@ void Writer::put_attributes(Node owner, frontend::Range32 attributes) {
   Node list = data(owner, "attributes").append_child("Attributes");
   for (uint32_t i = 0; i < attributes.count; ++i) {
     const frontend::Attribute& attribute = tree_.attributes[attributes.first + i];
+    const auto [name, value] = name_and_value(attribute);
     Node each = list.append_child("Attribute");
-    each.append_attribute("Name") = std::string(attribute.name.text).c_str();
-    each.append_attribute("Value") = std::string(attribute.value).c_str();
+    each.append_attribute("Name") = name.c_str();
+    each.append_attribute("Value") = value.c_str();
   }
 }
 

@@ -56,6 +56,32 @@ std::string declaration_of(Node node) {
 
 }  // namespace
 
+// What export makes of rules; "" for every other attribute.
+static std::string rule_line(std::string_view name, std::string_view value) {
+  const auto quoted = [](std::string_view text) { return "'" + std::string(text) + "'"; };
+  const bool renamed = name.starts_with("renamed ") && name.ends_with(" from");
+  if (!renamed && name != "renamed from" && name != "migration of") return {};
+  std::string out = renamed && name.size() > 13
+                        ? "renamed '" + std::string(name.substr(8, name.size() - 13)) + "' from"
+                        : std::string(name);
+  std::string between = " := ";
+  while (!value.empty()) {
+    const size_t end = std::min(value.find(", "), value.size());
+    const std::string_view piece = value.substr(0, end);
+    const bool rule = name == "migration of";
+    if (rule && piece == "inverse") {
+      out += ", inverse";
+    } else if (rule && piece.starts_with("from ")) {
+      out += ", from := " + quoted(piece.substr(5));
+    } else {
+      out += between + quoted(piece);
+    }
+    between = ", ";
+    value.remove_prefix(std::min(end + 2, value.size()));
+  }
+  return "{" + out + "}\n";
+}
+
 std::string attribute_lines(Node data) {
   std::string out;
   for (Node each : xml::children(xml::child(data, "Attributes"), "Attribute")) {
@@ -63,6 +89,10 @@ std::string attribute_lines(Node data) {
     std::string value(xml::attribute(each, "Value"));
     for (char& c : name) c = c == '\'' || c == '}' || c == '{' ? '_' : c;
     for (char& c : value) c = c == '\'' || c == '}' || c == '{' ? '_' : c;
+    if (const std::string rule = rule_line(name, value); !rule.empty()) {
+      out += rule;
+      continue;
+    }
     out += "{attribute '" + name + "'" + (value.empty() ? "" : " := '" + value + "'") + "}\n";
   }
   return out;

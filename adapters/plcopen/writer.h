@@ -18,6 +18,7 @@ class Writer {
   Writer(const ExportInput& input, base::Diagnostics& diagnostics)
       : in_(input), tree_(input.tree), diagnostics_(diagnostics) {
     if (in_.with_sources) parts_.emplace(in_.sources);
+    read_texts();
   }
 
   void project(Node project);
@@ -44,6 +45,8 @@ class Writer {
   }
 
   // --- export_text.cc
+  void read_texts();
+  std::string_view text_of(uint32_t file) const;
   std::string_view slice(base::SourceSpan span) const;
   std::string flat(base::SourceSpan span) const;  // on one line, without comments
   std::string comment_before(base::SourcePos begin) const;
@@ -116,6 +119,7 @@ class Writer {
   const frontend::Tree& tree_;
   base::Diagnostics& diagnostics_;
   std::optional<SourceParts> parts_;
+  std::vector<std::optional<std::string>> texts_;  // by file: where {IF ...} leaves something out
 };
 
 // --- headers.cc

@@ -62,9 +62,11 @@ base::Status write_document(const tools::Options& options, std::optional<plcopen
     frontend::parse_all(project->sources, project->compile, tree, diagnostics);
   }
   if (!diagnostics.has_errors()) {
-    plcopen::ExportInput input{project->sources, tree,
-                               project->name,    form ? *form : plcopen::usual_form(project->kept),
-                               &project->kept,   !options.has("--without-sources")};
+    plcopen::ExportInput input{
+        project->sources,        tree,
+        project->name,           form ? *form : plcopen::usual_form(project->kept),
+        &project->kept,          !options.has("--without-sources"),
+        project->compile.defines};
     text = plcopen::export_document(input, diagnostics);
   }
   report(*project, diagnostics, *format);
