@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frontend/lex/pragma.h"
+#include "frontend/sema/declarations/made_names.h"
 #include "frontend/sema/declarations/rename_rules.h"
 #include "frontend/sema/sema.h"
 #include "ir/types/old_names.h"
@@ -150,16 +151,19 @@ std::string OldNames::old_member(const Variable& variable) const {
     before = of_block ? old_list(info) : std::string(info.old_name);
     if (!variable.method.empty()) std::replace(before.begin(), before.end(), '.', '_');
   }
-  if (own.empty() && before.empty()) return {};
-  // `x#last`, `x#action` are made for x.
+  std::vector<std::string> ends;
+  if (variable.name.text.find('#') != std::string_view::npos)
+    ends = MadeNames(sema_, variable).before();
+  const bool plain = own.empty() && ends.empty();
+  if (plain && before.empty()) return {};
+  // `x#last` is made for x and carries its rule.
   const std::string name(variable.name.text);
   const std::string made = name.substr(std::min(name.find('#'), name.size()));
-  std::vector<std::string> ends;
   for (std::string_view end : ir::old_names_of(own)) {
     if (!is_whole(end)) ends.push_back(std::string(end) + made);
     if (is_whole(end) && made.empty()) ends.emplace_back(end);
   }
-  if (!before.empty() || own.empty()) ends.push_back(name);
+  if (!before.empty() || plain) ends.push_back(name);
   if (front.empty()) return ir::old_names_rule(ends);
   const std::string fronts = with_name(before, front.substr(0, front.size() - 1));
   return joined_rules(fronts, front.substr(front.size() - 1), ir::old_names_rule(ends),
