@@ -48,7 +48,28 @@ ir::OldNameId OldNames::of_rule(Range32 attributes) {
   return add(renamed_from(sema_.tree, attributes));
 }
 
+ir::OldNameId OldNames::add_made(ir::TypeId type, std::string_view suffix) {
+  const ir::OldNameId rule = sema_.program.types[type].old_name;
+  if (!rule.valid()) return {};
+  std::vector<std::string> out;
+  for (std::string_view name : ir::old_names_of(sema_.program.types.old_name(rule)))
+    out.push_back(std::string(name) + std::string(suffix));
+  return add(ir::old_names_rule(out));
+}
+
+// `Block#pool`, `Block#states`.
+ir::OldNameId OldNames::of_pool(const Variable& variable) {
+  const std::string_view name = variable.name.text;
+  for (const Pool& pool : sema_.pools.all) {
+    if (name.starts_with(pool.name) && name.find('#') == pool.name.size())
+      return add_made(pool.type, name.substr(pool.name.size()));
+  }
+  return {};
+}
+
 ir::OldNameId OldNames::of(const Variable& variable) {
+  if (variable.decl == nullptr && variable.name.text.find('#') != std::string_view::npos)
+    return of_pool(variable);
   std::string rule = old_member(variable);
   const bool made = variable.name.text.find('#') != std::string_view::npos;
   if (variable.decl == nullptr || made) return add(std::move(rule));

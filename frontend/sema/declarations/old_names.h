@@ -14,6 +14,8 @@ class OldNames : public Phase {
 
   ir::OldNameId add(std::string name);  // invalid for ""
   ir::OldNameId of_rule(Range32 attributes);
+  // Of what is made of a type and named after it, with `suffix` behind.
+  ir::OldNameId add_made(ir::TypeId type, std::string_view suffix);
   // By the variable's own rule or that of the POU that it is part of.
   ir::OldNameId of(const Variable& variable);
   // The old names of the type `name(instance)`, by the rules of the program and of its instance.
@@ -25,6 +27,7 @@ class OldNames : public Phase {
  private:
   std::string old_list(const PouInfo& info) const;
   std::string old_member(const Variable& variable) const;
+  ir::OldNameId of_pool(const Variable& variable);
   bool has_part(ir::TypeId type, std::string_view part) const;
 };
 

@@ -1,6 +1,7 @@
 #include "frontend/sema/objects/pools.h"
 #include "frontend/sema/declarations/collection.h"
 #include "frontend/sema/declarations/interfaces.h"
+#include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/types/types.h"
 
@@ -90,6 +91,8 @@ uint32_t Pools::add_box(const TypeDecl& decl, std::string_view name) {
   value.span = decl.name.span;
   block.vars.push_back(std::move(value));
   const uint32_t number = ask<Collection>().add_pou(made, false, made.name.text);
+  sema_.program.types.edit(sema_.declared.pous[number].self).old_name =
+      ask<OldNames>().add_made(ask<Types>().resolve_type(decl.spec).type, "#box");
   ask<Objects>().inherit();
   ask<Interfaces>().resolve_interface(number);
   return number;
