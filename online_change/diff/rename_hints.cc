@@ -33,12 +33,13 @@ std::vector<const Member*> only_here(const ir::Type& type, const ir::Type& other
   return out;
 }
 
-// `List.x` is x for a variable of the same list.
-std::string_view seen_from(const std::string& name, const std::string& other) {
+// `List.x` is x for a variable of the same list, and `x` is `.x` for one of a list.
+std::string seen_from(const std::string& name, const std::string& other) {
   const size_t list = name.rfind('.');
   const bool same = list != std::string::npos && list < other.size() &&
                     ir::same_name(name.substr(0, list + 1), other.substr(0, list + 1));
-  return std::string_view(name).substr(same ? list + 1 : 0);
+  const bool of_none = list == std::string::npos && other.find('.') != std::string::npos;
+  return (of_none ? "." : "") + name.substr(same ? list + 1 : 0);
 }
 
 // The old name of a rule that leads into a function block of the old area; "" when none does.
@@ -120,8 +121,8 @@ void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId
   for (const auto& [type, group] : groups) {
     if (group.gone.size() != group.came.size()) continue;
     for (size_t i = 0; i < group.gone.size(); ++i) {
-      const std::string old_name(seen_from(group.gone[i]->name, group.came[i]->name));
-      diff.hints[ir::fold_name(group.came[i]->name)] = "; if it is `" + old_name +
+      const std::string old_name = seen_from(group.gone[i]->name, group.came[i]->name);
+      diff.hints[ir::fold_name(group.came[i]->name)] = "; if it is `" + old_name.substr(old_name[0] == '.') +
                                                        "` renamed, write {renamed from := '" +
                                                        old_name + "'} before it";
     }

@@ -153,8 +153,11 @@ std::string Planner::type_rename_hint(ir::TypeId before, ir::TypeId after) const
   const bool same = std::equal(
       gone.members.begin(), gone.members.end(), came.members.begin(), came.members.end(),
       [](const ir::Member& a, const ir::Member& b) { return ir::same_name(a.name, b.name); });
+  const bool into =
+      came.name.find('.') != std::string::npos && gone.name.find('.') == std::string::npos;
   return same ? "; if `" + gone.name + "` is called `" + came.name +
-                    "` now, write {renamed from := '" + gone.name + "'} before it"
+                    "` now, write {renamed from := '" + (into ? "." : "") + gone.name +
+                    "'} before it"
               : std::string();
 }
 

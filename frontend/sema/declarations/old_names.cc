@@ -26,7 +26,7 @@ std::string joined_rules(std::string_view fronts, const std::string& between, st
                          std::string_view now) {
   std::vector<std::string> out;
   for (std::string_view end : ir::old_names_of(ends)) {
-    if (is_whole(end)) out.emplace_back(end);
+    if (is_whole(end)) out.emplace_back(without_dot(end));
   }
   for (std::string_view front : ir::old_names_of(fronts)) {
     for (std::string_view end : ir::old_names_of(ends)) {
@@ -182,7 +182,7 @@ std::string OldNames::old_member(const Variable& variable) const {
   const std::string made = name.substr(std::min(name.find('#'), name.size()));
   for (std::string_view end : ir::old_names_of(own)) {
     if (!is_whole(end)) ends.push_back(std::string(end) + made);
-    if (is_whole(end) && made.empty()) ends.emplace_back(end);
+    if (is_whole(end) && made.empty()) ends.emplace_back(front.empty() ? without_dot(end) : end);
   }
   if (!before.empty() || plain) ends.push_back(name);
   if (front.empty()) return ir::old_names_rule(ends);

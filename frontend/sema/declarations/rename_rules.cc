@@ -42,8 +42,9 @@ bool is_part(std::string_view text) {
   return true;
 }
 
-// A name, or one of a part of a variable.
+// A name, or one of a part of a variable; `.name` is one of no list and no namespace.
 bool is_path(std::string_view text) {
+  if (text.starts_with('.')) return is_part(text) && text.find_first_of(".[", 1) == text.npos;
   return !text.empty() && is_name_part(text[0]) && is_part("." + std::string(text));
 }
 
@@ -73,6 +74,13 @@ bool is_kept(PouKind pou, VarSection section) {
       return false;
   }
 }
+
+// What an old name may lead to, beside what is declared at the same place.
+enum class Reach : uint8_t {
+  kNeighbours,  // nothing
+  kParts,       // parts of neighbours
+  kProgram,     // and what has another list or namespace
+};
 
 class Checker {
  public:
@@ -111,10 +119,11 @@ class Checker {
   void check_file_level() {
     Scope types;
     for (const TypeDecl& decl : tree_.types) {
-      check_rule(decl.attributes, decl.name, types, true);
+      check_rule(decl.attributes, decl.name, types, Reach::kProgram);
       if (decl.spec.valid()) check_spec(decl.spec);
     }
-    for (const PouDecl& pou : tree_.pous) check_rule(pou.attributes, pou.name, types, true);
+    for (const PouDecl& pou : tree_.pous)
+      check_rule(pou.attributes, pou.name, types, Reach::kProgram);
     Scope globals;
     for (const VarBlock& block : tree_.globals) check_block(block, globals);
   }
@@ -126,7 +135,7 @@ class Checker {
     }
     Scope members;
     for (const PouDecl& member : pou.members) {
-      check_rule(member.attributes, member.name, members, false);
+      check_rule(member.attributes, member.name, members, Reach::kNeighbours);
       check_pou(member);
     }
   }
@@ -138,7 +147,7 @@ class Checker {
       const bool plain = block.section == VarSection::kLocal ||
                          block.section == VarSection::kInput ||
                          block.section == VarSection::kOutput;
-      return check_declaration(decl, variables, plain);
+      return check_declaration(decl, variables, plain ? Reach::kParts : Reach::kNeighbours);
     }
     const Attribute* rule = own_rule(tree_, decl.attributes);
     if (rule == nullptr || decl.names.empty()) return;
@@ -150,7 +159,7 @@ class Checker {
   void check_block(const VarBlock& block, Scope& scope) {
     for (const VarDecl& decl : block.vars) {
       if (decl.spec.valid()) check_spec(decl.spec);
-      if (block.section == VarSection::kGlobal) check_declaration(decl, scope, true);
+      if (block.section == VarSection::kGlobal) check_declaration(decl, scope, Reach::kProgram);
     }
   }
 
@@ -161,7 +170,7 @@ class Checker {
       for (const VarBlock& block : resource.globals) check_block(block, globals);
       Scope programs;
       for (const ProgramDecl& program : resource.programs) {
-        check_rule(program.attributes, program.name, programs, false);
+        check_rule(program.attributes, program.name, programs, Reach::kNeighbours);
       }
     }
   }
@@ -174,11 +183,11 @@ class Checker {
     for (const VarDecl& field : spec.fields) {
       if (field.spec.valid()) check_spec(field.spec);
       if (is_bit(field)) check_bit(field, spec);
-      check_declaration(field, members, false);
+      check_declaration(field, members, Reach::kNeighbours);
     }
     Scope literals;
     for (const Enumerator& literal : spec.enumerators) {
-      check_rule(literal.attributes, literal.name, literals, false);
+      check_rule(literal.attributes, literal.name, literals, Reach::kNeighbours);
     }
   }
 
@@ -205,12 +214,11 @@ class Checker {
     }
   }
 
-  // `paths`: a variable of an area, whose neighbours have parts.
-  void check_declaration(const VarDecl& decl, Scope& scope, bool paths) {
-    if (paths) check_parts(decl, scope);
+  void check_declaration(const VarDecl& decl, Scope& scope, Reach reach) {
+    if (reach != Reach::kNeighbours) check_parts(decl, scope);
     const Attribute* rule = own_rule(tree_, decl.attributes);
     if (rule == nullptr || decl.names.empty()) return;
-    if (decl.names.size() == 1) return check_rule(decl.attributes, decl.names[0], scope, paths);
+    if (decl.names.size() == 1) return check_rule(decl.attributes, decl.names[0], scope, reach);
     seen_.insert(rule->name.span.begin.offset);
     report(*rule, "this declares several variables, and the rule gives one old name",
            "declare the renamed variable by itself");
@@ -236,7 +244,7 @@ class Checker {
     }
   }
 
-  void check_rule(Range32 attributes, const Name& name, Scope& scope, bool paths) {
+  void check_rule(Range32 attributes, const Name& name, Scope& scope, Reach reach) {
     const Attribute* rule = own_rule(tree_, attributes);
     if (rule == nullptr || name.empty()) return;
     seen_.insert(rule->name.span.begin.offset);
@@ -250,18 +258,19 @@ class Checker {
                     "leave out those that no controller has any more");
     }
     for (std::string_view old_name : old_names) {
-      if (!check_old_name(*rule, old_name, name, scope, paths)) return;
+      if (!check_old_name(*rule, old_name, name, scope, reach)) return;
     }
   }
 
   bool check_old_name(const Attribute& rule, std::string_view old_name, const Name& name,
-                      Scope& scope, bool paths) {
+                      Scope& scope, Reach reach) {
     if (ir::same_name(old_name, name.text)) {
       report(rule, quoted(name.text) + " is said to be renamed from itself",
              "give the name that it had, or take the rule away");
       return false;
     }
-    if (!paths && has_parts(old_name)) {
+    const bool far = old_name.starts_with('.') && reach != Reach::kProgram;
+    if (far || (reach == Reach::kNeighbours && has_parts(old_name))) {
       report(rule, quoted(old_name) + " is a variable of another place",
              "a rule names something of the same place; one before a variable of a program, a "
              "function block or VAR_GLOBAL also names parts of its neighbours, and '.member' "
@@ -310,13 +319,18 @@ std::vector<const Attribute*> part_rules(const Tree& tree, Range32 attributes) {
   return out;
 }
 
+std::string_view without_dot(std::string_view old_name) {
+  return old_name.substr(old_name.starts_with('.') ? 1 : 0);
+}
+
 std::string whole_old_names(std::string_view name, std::string_view rule) {
   const size_t dot = name.rfind('.');
   std::vector<std::string> out;
   for (std::string_view old_name : ir::old_names_of(rule)) {
     const bool whole =
         dot == std::string_view::npos || old_name.find('.') != std::string_view::npos;
-    out.push_back((whole ? "" : std::string(name.substr(0, dot + 1))) + std::string(old_name));
+    out.push_back((whole ? "" : std::string(name.substr(0, dot + 1))) +
+                  std::string(without_dot(old_name)));
   }
   return ir::old_names_rule(out);
 }

@@ -19,6 +19,8 @@ std::string renamed_from(const Tree& tree, Range32 attributes);
 // Rules for parts of what is declared: {renamed '.x' from := 'old'}.
 std::vector<const Attribute*> part_rules(const Tree& tree, Range32 attributes);
 
+// `.name` is a whole name that has no list and no namespace in front.
+std::string_view without_dot(std::string_view old_name);
 // The old names of what is called `name` now, with everything in front of its last dot; an old name
 // with dots is a whole one.
 std::string whole_old_names(std::string_view name, std::string_view rule);
