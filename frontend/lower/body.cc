@@ -103,6 +103,7 @@ void write_body(Sema& sema, uint32_t pou) {
   PouInfo& info = sema.declared.pous[pou];
   Lowering body(sema, info, pou, sema.program.pous[info.id.index]);
   WholeBody(body, PouScope(info)).write();
+  if (info.usual_depth != 0) body.out.recursion_depth = info.usual_depth;
   sema.program.pous[info.id.index] = std::move(body.out);
 }
 

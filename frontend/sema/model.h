@@ -285,6 +285,7 @@ struct PouInfo {
   std::vector<Connection> connections;  // of a program instance
   VarId global;                         // of a program that others use: called_programs.cc
   bool called = false;                  // by other POUs
+  uint32_t usual_depth = 0;             // of calls by other instances in a circle (recursion.cc)
   std::vector<OutputWrite> writes;      // filled by lowering, like callees
   std::vector<uint32_t> callees;
   std::vector<OuterUse> outer_uses;

@@ -110,7 +110,7 @@ class Objects : public Phase {
   // --- calls (recursion.cc)
   // How deep the POU may call itself, by its attribute; 0: not declared.
   uint32_t recursion_depth(const PouDecl& decl);
-  void check_recursion();  // after all bodies
+  void check_recursion();  // after all bodies; again after some were lowered anew
 
  private:
   bool in_action_of(uint32_t block) const;
@@ -132,6 +132,9 @@ class Objects : public Phase {
   bool inherits(const PouInfo& info, const PouInfo& interface) const;
 
   void report_circle(const std::vector<uint32_t>& path);
+  uint32_t other_instance_in(const std::vector<uint32_t>& circle) const;
+  void give_usual_depth(const std::vector<uint32_t>& pous);
+  std::vector<uint32_t> find_circle(std::vector<uint8_t>& marks) const;
   // start.cc
   void check_start_arguments();
   void check_start_arguments(SpecId spec, ir::TypeId type, std::vector<bool>& good);

@@ -1,6 +1,11 @@
 // Circles of calls. Each needs a POU that declares how deep it goes, so that the stack can be
-// sized for it: {attribute 'recursion_depth' := '20'}.
+// sized for it: {attribute 'recursion_depth' := '20'}. A method that calls one of another instance
+// (`next.Handle()`, by an interface, a pointer or a reference) may be in a circle and never run
+// inside itself, as decorators, chains and trees are: it has kUsualDepth where it declares none.
+#include <algorithm>
 #include <charconv>
+#include <unordered_set>
+#include <utility>
 
 #include "base/limits.h"
 #include "frontend/sema/objects/objects.h"
@@ -10,10 +15,30 @@ namespace {
 
 constexpr std::string_view kRecursionDepth = "recursion_depth";
 
+// Few circles may be that deep together: the number of calls inside each other is limited.
+constexpr uint32_t kUsualDepth = 16;
+constexpr uint32_t kLeastDepth = 4;
+constexpr uint32_t kUsualActivations = 64;
+
 struct Frame {
   uint32_t pou;
   size_t next = 0;
 };
+
+// Does the code call `callee`, or what may stand in its place, for an instance that a handle leads
+// to? THIS leads to its own.
+bool calls_another(const ir::Pou& code, const std::vector<bool>& may_run) {
+  std::unordered_set<uint32_t> own;
+  for (const ir::Block& block : code.blocks) {
+    for (const ir::Inst& inst : block.insts) {
+      if (inst.op == ir::Op::kThis) own.insert(inst.result.index);
+      const bool call = inst.op == ir::Op::kCallVirtual || inst.op == ir::Op::kCallMethod;
+      if (!call || inst.operands.empty() || own.contains(inst.operands[0].index)) continue;
+      if (may_run[inst.pou.index]) return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -43,39 +68,89 @@ void Objects::report_circle(const std::vector<uint32_t>& path) {
         "use a loop, or declare how deep it goes: {attribute 'recursion_depth' := '20'}");
 }
 
+// A POU of the circle whose next call in it is one of another instance; kNoPou: none.
+uint32_t Objects::other_instance_in(const std::vector<uint32_t>& circle) const {
+  for (size_t i = 0; i < circle.size(); ++i) {
+    const PouInfo& caller = sema_.declared.pous[circle[i]];
+    const uint32_t next = circle[(i + 1) % circle.size()];
+    if (!caller.id.valid()) continue;
+    std::vector<bool> may_run(sema_.program.pous.size(), false);
+    for (const uint32_t callee : caller.callees) {
+      const PouInfo& method = sema_.declared.pous[callee];
+      const std::vector<uint32_t>& others = method.overrides;
+      const bool meant =
+          callee == next || std::find(others.begin(), others.end(), next) != others.end();
+      if (meant && method.id.valid()) may_run[method.id.index] = true;
+    }
+    if (calls_another(sema_.program.pous[caller.id.index], may_run)) return circle[i];
+  }
+  return kNoPou;
+}
+
+// All of them share what is usual.
+void Objects::give_usual_depth(const std::vector<uint32_t>& pous) {
+  const auto count = static_cast<uint32_t>(pous.size());
+  for (const uint32_t pou : pous) {
+    PouInfo& info = sema_.declared.pous[pou];
+    info.usual_depth = std::clamp(kUsualActivations / count, kLeastDepth, kUsualDepth);
+    sema_.program.pous[info.id.index].recursion_depth = info.usual_depth;
+  }
+}
+
 // Depth first through what declares no depth, with a stack of its own: chains may be long.
-void Objects::check_recursion() {
-  if (sema_.report.has_errors()) return;  // a circle may be one of the mistakes
-  enum class Mark : uint8_t { kNew, kOpen, kDone };
-  std::vector<Mark> marks(sema_.declared.pous.size(), Mark::kNew);
+std::vector<uint32_t> Objects::find_circle(std::vector<uint8_t>& marks) const {
+  enum Mark : uint8_t { kNew, kOpen, kDone };
   for (uint32_t start = 0; start < sema_.declared.pous.size(); ++start) {
-    if (marks[start] != Mark::kNew) continue;
+    if (marks[start] != kNew) continue;
     std::vector<Frame> stack{{start}};
-    marks[start] = Mark::kOpen;
+    marks[start] = kOpen;
     while (!stack.empty()) {
       Frame& top = stack.back();
       const PouInfo& info = sema_.declared.pous[top.pou];
       const bool declared =
           info.id.valid() && sema_.program.pous[info.id.index].recursion_depth != 0;
       if (declared || top.next == info.callees.size()) {
-        marks[top.pou] = Mark::kDone;
+        marks[top.pou] = kDone;
         stack.pop_back();
         continue;
       }
       const uint32_t callee = info.callees[top.next++];
-      if (marks[callee] == Mark::kNew) {
-        marks[callee] = Mark::kOpen;
+      if (marks[callee] == kNew) {
+        marks[callee] = kOpen;
         stack.push_back({callee});
-      } else if (marks[callee] == Mark::kOpen) {
+      } else if (marks[callee] == kOpen) {
         std::vector<uint32_t> path;
         for (size_t i = stack.size(); i-- > 0;) {
           path.insert(path.begin(), stack[i].pou);
           if (stack[i].pou == callee) break;
         }
-        report_circle(path);
-        marks[callee] = Mark::kDone;  // once
+        for (const Frame& frame : stack) marks[frame.pou] = kNew;  // to be looked at again
+        return path;
       }
     }
+  }
+  return {};
+}
+
+void Objects::check_recursion() {
+  if (sema_.report.has_errors()) return;  // a circle may be one of the mistakes
+  std::vector<uint32_t> usual;
+  for (PouInfo& info : sema_.declared.pous) {
+    if (std::exchange(info.usual_depth, 0) != 0)
+      sema_.program.pous[info.id.index].recursion_depth = 0;
+  }
+  std::vector<uint8_t> marks(sema_.declared.pous.size(), 0);
+  for (;;) {
+    const std::vector<uint32_t> circle = find_circle(marks);
+    if (circle.empty()) break;
+    const uint32_t pou = other_instance_in(circle);
+    if (pou == kNoPou) {
+      report_circle(circle);
+      marks[circle[0]] = 2;  // once
+      continue;
+    }
+    usual.push_back(pou);
+    give_usual_depth(usual);
   }
 }
 
