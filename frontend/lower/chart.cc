@@ -84,7 +84,7 @@ bool ChartBody::find_places() {
     actions_.push_back(variable(action.decl != nullptr ? action.name.text : record, "Q"));
     good = good && actions_.back().valid();
   }
-  clock_ = variable(sfc::kClock, nullptr);
+  clock_ = variable(sfc::clock_name(*info_.decl), nullptr);
   if (!good || !clock_.valid()) return false;
   users_.resize(net_.actions.size());
   for (uint32_t step = 0; step < net_.steps.size(); ++step) {

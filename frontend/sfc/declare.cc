@@ -50,7 +50,9 @@ void declare(Tree& tree, PouDecl& pou, const Chart& chart, const Net& net) {
     if (first.decl == &action) continue;
     block.vars.push_back(implied(tree, kActionType, action.name, chart.span, action.attributes));
   }
-  block.vars.push_back(implied(tree, "TIME", {kClock, chart.span}, chart.span, {}));
+  tree.made_names.push_back(clock_name(pou));
+  const Name clock{tree.made_names.back(), chart.span};
+  block.vars.push_back(implied(tree, "TIME", clock, chart.span, {}));
   pou.blocks.push_back(std::move(block));
 }
 
@@ -75,6 +77,10 @@ void declare_charts(Tree& tree, base::Diagnostics& diagnostics) {
     if (!damaged(pou, diagnostics)) check(chart, net, pou.name, diagnostics);
     declare(tree, pou, chart, net);
   }
+}
+
+std::string clock_name(const PouDecl& pou) {
+  return (pou.extends.empty() ? "" : std::string(pou.name.text) + ".") + kClock;
 }
 
 }  // namespace frontend::sfc

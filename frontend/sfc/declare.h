@@ -5,6 +5,8 @@
 // as all variables are: by name. Charts are checked on the way.
 #pragma once
 
+#include <string>
+
 #include "base/diagnostics.h"
 #include "frontend/parse/tree.h"
 
@@ -12,7 +14,10 @@ namespace frontend::sfc {
 
 inline constexpr const char* kStepType = "__SFC_STEP";
 inline constexpr const char* kActionType = "__SFC_ACTION";
-inline constexpr const char* kClock = "sfc#clock";  // TIME of the last call
+// TIME of the last call; that of a block with a base has the block in front, since the base's body
+// is another one and may be a chart as well: `Block.sfc#clock`.
+inline constexpr const char* kClock = "sfc#clock";
+std::string clock_name(const PouDecl& pou);
 inline constexpr const char* kRecordSuffix = "#action";
 
 void declare_charts(Tree& tree, base::Diagnostics& diagnostics);

@@ -168,6 +168,10 @@ Names MadeNames::before() const {
     const std::string_view action = name.substr(0, name.find('#'));
     out = joined(of_operand(action), {sfc::kRecordSuffix});
   }
+  if (name.ends_with(sfc::kClock)) {
+    std::string_view front = name;
+    out = joined(prefixes(front), {sfc::kClock});
+  }
   for (const std::string_view edge : {"#rising", "#falling"}) {
     const size_t at = name.find(edge);
     if (at == std::string_view::npos) continue;

@@ -1,12 +1,16 @@
 // Variables and members: what a name means, its type and its initial value.
 
 #include "frontend/sema/declarations/variables.h"
+
+#include <limits>
+
 #include "frontend/parse/il_operators.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types/types.h"
+#include "frontend/sfc/declare.h"
 #include "ir/types/parts.h"
 
 namespace frontend {
@@ -101,6 +105,11 @@ void Variables::resolve_variable(VarId id) {
   check_edge(variable);
   check_binding(*variable.decl, variable.type);
   if (variable.decl->init.valid() && !variable.hidden) resolve_initial(variable);
+  // Later than any time: a clock that has never been called stands still once (chart_steps.cc).
+  if (variable.decl->implied && variable.name.text.ends_with(sfc::kClock)) {
+    constexpr int64_t kLatest = std::numeric_limits<int64_t>::max();
+    variable.init = sema_.program.constants.add({static_cast<uint64_t>(kLatest), {}, {}});
+  }
 }
 
 // `r : REFERENCE TO INT REF= x`
