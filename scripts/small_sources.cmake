@@ -83,7 +83,10 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/bytecode/verify_checks.cc
      ${CMAKE_SOURCE_DIR}/vm/load/code_slots.cc ${CMAKE_SOURCE_DIR}/vm/load/last_reads.cc
      ${CMAKE_SOURCE_DIR}/ir/types/natural_layout.cc ${CMAKE_SOURCE_DIR}/ir/types/constants.cc
-     ${CMAKE_SOURCE_DIR}/ir/types/member_finder.cc ${CMAKE_SOURCE_DIR}/ir/types/shared_bytes.cc)
+     ${CMAKE_SOURCE_DIR}/ir/types/member_finder.cc ${CMAKE_SOURCE_DIR}/ir/types/shared_bytes.cc
+     ${CMAKE_SOURCE_DIR}/vm/load/same_code.cc ${CMAKE_SOURCE_DIR}/stdlib/native/dates.cc
+     ${CMAKE_SOURCE_DIR}/ir/types/parts.cc ${CMAKE_SOURCE_DIR}/base/source.cc
+     ${CMAKE_SOURCE_DIR}/base/check.cc ${CMAKE_SOURCE_DIR}/base/large_pages.cc)
 # Where a native version spends its time while it is made.
 foreach(name facts allocate allocator_state uses forward simplify numbers)
   list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ir/bytecode/variable_names.h"
 #include "online_change/diff/value_conversion.h"
 
 namespace online_change {
@@ -84,7 +85,9 @@ void Migrations::add(uint32_t number) {
   const auto place = static_cast<uint32_t>(rows_.size());
   for (uint32_t i = 0; i < migration.values.size(); ++i) {
     const MigratedValue& value = migration.values[i];
-    if (value.input) {
+    if (value.place != 0) {
+      note_reader(row.values[i].member, new_.pous[row.pou].name);
+    } else if (value.input) {
       read_.try_emplace({migration.from_type, migration.to_type, value.member},
                         new_.pous[row.pou].name);
     } else if (!made_
@@ -119,17 +122,21 @@ bool Migrations::add_value(Migration& migration, const ir::LinkedMigration& row,
   const TypeId type = value.input ? migration.from_type : migration.to_type;
   const char* version = &image == &old_ ? "running" : "new";
   const int32_t member = image.types.find_member(type, name.member);
-  if (member < 0) {
-    fail(row, "`" + image.types.text(type) + "` of the " + version + " program has no `" +
+  if (member >= 0) {
+    value.member = static_cast<uint32_t>(member);
+    const ir::Member& found = image.types[type].members[value.member];
+    value.type = found.section == ir::Section::kInOut ? TypeId() : found.type;
+  } else if (!value.input || !find_elsewhere(name.member, value)) {
+    const bool globals = type == image.globals;
+    fail(row, (globals ? std::string("the globals") : "`" + image.types.text(type) + "`") +
+                  " of the " + version + " program " + (globals ? "have" : "has") + " no `" +
                   name.member + "`; take the parameter out, or name another variable");
     return false;
   }
-  value.member = static_cast<uint32_t>(member);
-  const ir::Member& found = image.types[type].members[value.member];
-  if (!fits(slots[value.slot], value, migration)) {
+  if (!fits(slots[value.slot], value.type, value.input)) {
     fail(row, "`" + name.member + "` of the " + version + " program is " +
-                  image.types.text(found.type) + ", `" + name.parameter + "` is " +
-                  new_.types.text(slots[value.slot].region.type) +
+                  (value.type.valid() ? image.types.text(value.type) : "an in-out") + ", `" +
+                  name.parameter + "` is " + new_.types.text(slots[value.slot].region.type) +
                   "; declare the parameter with the type of the variable");
     return false;
   }
@@ -137,19 +144,42 @@ bool Migrations::add_value(Migration& migration, const ir::LinkedMigration& row,
   return true;
 }
 
+// `Main.ticks`, `GVL.x`: where another area has it.
+bool Migrations::find_elsewhere(const std::string& path, MigratedValue& value) const {
+  const base::Result<ir::Symbol> symbol =
+      ir::named_symbol(from_, path.starts_with('.') ? path.substr(1) : path);
+  if (!symbol.ok() || symbol->bit_mask != 0) return false;
+  value.place = symbol->data;
+  value.type = symbol->type;
+  return true;
+}
+
+// What of a program or of the globals goes is not lost then.
+void Migrations::note_reader(const std::string& path, const std::string& reader) {
+  const size_t dot = path.find('.');
+  const std::string program = path.substr(0, dot);
+  const auto note = [&](TypeId type, const std::string& name) {
+    const int32_t member = from_.types.find_member(type, name);
+    const TypeId next = member < 0 ? TypeId() : same_type_in(to_, from_, type);
+    if (next.valid()) read_.try_emplace({type, next, static_cast<uint32_t>(member)}, reader);
+  };
+  note(from_.globals, dot == 0 ? path.substr(1) : path);
+  for (const uint32_t id : from_.program_ids()) {
+    const bool meant = dot != std::string::npos && ir::same_name(from_.instances[id].name, program);
+    if (meant) note(from_.instances[id].type, path.substr(dot + 1));
+  }
+}
+
 // Inputs take what A14 carries over exactly, outputs are of the variable's own type.
-bool Migrations::fits(const ir::FrameSlot& slot, const MigratedValue& value,
-                      const Migration& migration) const {
-  const ir::Image& image = value.input ? from_ : to_;
-  const TypeId type = value.input ? migration.from_type : migration.to_type;
-  const ir::Member& member = image.types[type].members[value.member];
-  if (member.section == ir::Section::kInOut || image.types.is_instance(member.type)) return false;
-  if (ir::same_value_type(image.types, image.layouts, member.type, new_.types, new_.layouts,
+bool Migrations::fits(const ir::FrameSlot& slot, TypeId type, bool input) const {
+  const ir::Image& image = input ? from_ : to_;
+  if (!type.valid() || image.types.is_instance(type)) return false;
+  if (ir::same_value_type(image.types, image.layouts, type, new_.types, new_.layouts,
                           slot.region.type)) {
     return true;
   }
-  if (!value.input) return false;
-  const Conversion way = classify(image.types, member.type, new_.types, slot.region.type);
+  if (!input) return false;
+  const Conversion way = classify(image.types, type, new_.types, slot.region.type);
   return way == Conversion::kSame || way == Conversion::kExact;
 }
 

@@ -22,6 +22,9 @@ struct MigratedValue {
   uint32_t slot = 0;  // of the function's frame
   bool input = false;
   uint32_t member = 0;  // inputs: of the version that is read; outputs: of the one that is made
+  // An input from another area, by its path: in data memory of the version that is read; 0: none.
+  uint32_t place = 0;
+  ir::TypeId type = {};  // there
 };
 
 struct Migration {
@@ -62,8 +65,9 @@ class Migrations {
   bool is_carried(const ir::LinkedMigration& row) const;
   uint32_t slot_of(const ir::LinkedMigration& row, const std::string& parameter) const;
   bool add_value(Migration& migration, const ir::LinkedMigration& row, size_t number);
-  bool fits(const ir::FrameSlot& slot, const MigratedValue& value,
-            const Migration& migration) const;
+  bool fits(const ir::FrameSlot& slot, ir::TypeId type, bool input) const;
+  bool find_elsewhere(const std::string& path, MigratedValue& value) const;
+  void note_reader(const std::string& path, const std::string& reader);
   void fail(const ir::LinkedMigration& row, std::string why);
 
   const ir::Image& old_;

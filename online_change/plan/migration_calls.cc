@@ -38,6 +38,10 @@ uint32_t MigrationCalls::call_for(const DiffOp& op, uint32_t instance, uint32_t 
   }
   for (const MigratedValue& value : migration.values) {
     if (!value.input) continue;
+    if (value.place != 0) {
+      call.inputs.push_back({value.place, value.type, slots[value.slot].offset});
+      continue;
+    }
     call.inputs.push_back({from + from_.layouts[migration.from_type].member_offsets[value.member],
                            from_.types[migration.from_type].members[value.member].type,
                            slots[value.slot].offset});

@@ -141,7 +141,10 @@ bool Migrations::add_value(ir::Migration& row, const Variable& variable) {
            "migrate plain data");
     return false;
   }
-  if (!is_old && !is_new_member(row, variable, name)) return false;
+  // `.x`, `Main.p.x`: of another area; found when the change is planned, as all of the old version.
+  const bool elsewhere = input && name.find_first_of(".[") != std::string::npos &&
+                         sema_.program.types.find_member(row.type, name) < 0;
+  if (!is_old && !elsewhere && !is_new_member(row, variable, name)) return false;
   const bool twice = std::any_of(row.values.begin(), row.values.end(), [&](const auto& other) {
     return !input && other.output && ir::same_name(other.member, name);
   });
