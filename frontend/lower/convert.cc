@@ -190,7 +190,11 @@ ir::ValueId Conversions::emit_conversion(const Expr& expr, const Conversion& con
   ir::TypeId from = without_range(types(), named ? elementary(conversion.from) : given);
   ir::ValueId source = value(argument, from);
   set_line(expr.span);
-  if (conversion.bcd == Conversion::Bcd::kFrom) return code_.from_bcd({source, from}, to);
+  if (conversion.bcd == Conversion::Bcd::kFrom) {
+    // BCD_TO_INT is a function of CODESYS' library Util: -1 for what is no BCD.
+    const bool of_util = !named && conversion.to == ir::Kind::kInt;
+    return code_.from_bcd({source, from}, to, of_util && sema_.options.dialect != Dialect::kIec);
+  }
   if (conversion.bcd == Conversion::Bcd::kTo) return code_.to_bcd({source, from}, to);
   return code_.explicit_conversion({source, from}, to, conversion.truncate);
 }

@@ -5,13 +5,18 @@
 
 namespace frontend {
 
-ir::ValueId ValueCode::from_bcd(Typed from, ir::TypeId to) {
+ir::ValueId ValueCode::from_bcd(Typed from, ir::TypeId to, bool or_all_bits) {
   constexpr ir::Scalar kU64 = ir::Scalar::kU64;
   ir::ValueId bits = machine_convert(from.value, scalar(from.type), kU64);
   ir::ValueId number = native(stdlib::NativeId::kBcdToNumber, {bits});
   auto most = static_cast<uint64_t>(limits_of(scalar(to)).high);
   if (most > 9'999'999'999'999'999) most = 9'999'999'999'999'999;
-  require(build_.compare(ir::Op::kLe, kU64, number, build_.constant(kU64, most)));
+  ir::ValueId checked = number;
+  if (or_all_bits) {  // what is no BCD is all bits already, and one more is 0
+    checked = build_.binary(ir::Op::kAdd, kU64, number, build_.constant(kU64, 1));
+    ++most;
+  }
+  require(build_.compare(ir::Op::kLe, kU64, checked, build_.constant(kU64, most)));
   return machine_convert(number, kU64, scalar(to));
 }
 

@@ -38,7 +38,8 @@ class ValueCode {
   ir::ValueId time_to_time(Typed from, ir::TypeId to);
   ir::ValueId floor_modulo(ir::ValueId value, int64_t divisor);
   ir::ValueId narrow_character(ir::ValueId wide_character);
-  ir::ValueId from_bcd(Typed from, ir::TypeId to);  // convert_bcd.cc
+  // convert_bcd.cc. `or_all_bits`: those are the result for what is no BCD, in place of a trap.
+  ir::ValueId from_bcd(Typed from, ir::TypeId to, bool or_all_bits = false);
   ir::ValueId to_bcd(Typed from, ir::TypeId to);
   ir::ValueId clamp(ir::ValueId number, ir::Scalar wide, ir::Scalar narrow);
 

@@ -16,10 +16,11 @@ bool Collection::is_any_part(std::string_view name) {
 
 bool Collection::takes_any(const VarDecl& decl, VarSection section, const PouDecl& pou) const {
   if (section != VarSection::kInput || sema_.options.dialect == Dialect::kIec) return false;
-  if (!decl.spec.valid() || sema_.library.holds(pou.span)) return false;
+  if (!decl.spec.valid()) return false;
   const Spec& spec = sema_.tree[decl.spec];
   if (spec.kind != SpecKind::kNamed || !is_generic_name(spec.name.text)) return false;
-  if (pou.kind == PouKind::kFunctionBlock || pou.kind == PouKind::kMethod) return true;
+  const bool block = pou.kind == PouKind::kFunctionBlock || pou.kind == PouKind::kMethod;
+  if (block) return !sema_.library.holds(pou.span);
   return pou.kind == PouKind::kFunction && names_any_part(decl, pou);
 }
 
@@ -33,9 +34,8 @@ bool Collection::names_any_part(const VarDecl& decl, const PouDecl& pou) const {
       const Expr& whole = sema_.tree[expr.operand];
       if (whole.kind == ExprKind::kName) known.any_parts.push_back(whole.name);
     });
-    std::ranges::sort(known.any_parts, [](const Name& a, const Name& b) {
-      return a.span.begin < b.span.begin;
-    });
+    std::ranges::sort(known.any_parts,
+                      [](const Name& a, const Name& b) { return a.span.begin < b.span.begin; });
   }
   auto used = std::ranges::partition_point(
       known.any_parts, [&](const Name& one) { return one.span.begin < pou.span.begin; });
