@@ -72,6 +72,10 @@ struct TestProgram {
 };
 // The STRING global that a failed assertion leaves its message in.
 inline constexpr const char* kTestMessage = "__TEST_MESSAGE";
+// Around a value in it that stc test makes a literal of: begin, the sort, the text, end. Sorts: a
+// quotation mark, or how many digits a bit string has, modulo 16.
+inline constexpr char kTestValueBegin = '\x0e';
+inline constexpr char kTestValueEnd = '\x0f';
 // The BOOL global that a test sets behind its SETUP when it has a TEARDOWN: its instance is then
 // run once more, whatever has ended it, and TEARDOWN is all that this run does.
 inline constexpr const char* kTestTeardown = "__TEST_TEARDOWN";

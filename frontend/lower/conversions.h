@@ -17,9 +17,11 @@ class Conversions : public BodyPhase {
   void write_text(const ir::Place& text, Typed source);
   ir::Place narrow_string(ir::Place source, bool wide);
 
+  // The number where no literal has it.
+  void write_enumerator_name(const ir::Place& text, Typed source);
+
  private:
   ir::Place string_to_string(ExprId source, ir::TypeId type);
-  void write_enumerator_name(const ir::Place& text, Typed source);
   ir::ValueId from_string(ExprId source, ir::TypeId to);
   ir::ValueId character_of(const ir::Place& text, ir::TypeId to);
 };

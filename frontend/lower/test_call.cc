@@ -125,32 +125,20 @@ void TestCode::assert_relation(TestCall call, const std::vector<ExprId>& args, E
   const Note common =
       ask<OperatorTypes>().unify(infer(args[0]), infer(args[1]), tree_[args[1]].span);
   if (!common.type.valid()) return;
-  std::function<ir::Place()> actual;
-  std::function<ir::Place()> expected;
-  ir::ValueId holds;
   if (is_string(types(), common.type)) {
     const ir::Place a = place(args[0]);
     const ir::Place b = place(args[1]);
-    actual = [this, a] { return ask<Conversions>().narrow_string(a, wide(a.type)); };
-    expected = [this, b] { return ask<Conversions>().narrow_string(b, wide(b.type)); };
-    holds = code_.compare_places(relation.op, a, b);
+    fail_unless(code_.compare_places(relation.op, a, b), message,
+                [&] { return difference(relation.wanted, literal_of(b), literal_of(a)); });
   } else if (!types().is_scalar(common.type)) {
-    error(DiagnosticCode::kWrongArgument, tree_[args[0]].span,
-          "`" + sema_.report.type_text(common.type) + "` cannot be compared as a whole",
-          "compare its members or elements");
-    return;
+    assert_parts(call, args, common.type, message);
   } else {
     const ir::TypeId type = compared_type(*this, common.type, {args[0], args[1]});
     const Typed a{value(args[0], type), type};
     const Typed b{value(args[1], type), type};
-    actual = [this, a] { return text_of(a); };
-    expected = [this, b] { return text_of(b); };
-    holds = code_.compare_scalars(relation.op, type, a.value, b.value);
+    fail_unless(code_.compare_scalars(relation.op, type, a.value, b.value), message,
+                [&] { return difference(relation.wanted, literal_of(b), literal_of(a)); });
   }
-  fail_unless(holds, message, [&] {
-    ir::Place text = joined(constant_text(std::string("expected ") + relation.wanted), expected());
-    return joined(joined(text, constant_text(", got ")), actual());
-  });
 }
 
 // NaN is near nothing.
@@ -213,6 +201,41 @@ ir::Place TestCode::constant_text(std::string text) {
       sema_.program.types.string(static_cast<uint32_t>(std::max<size_t>(text.size(), 1)));
   place.constant = sema_.program.constants.add({0, std::move(text), {}});
   return place;
+}
+
+// expected X, got Y
+ir::Place TestCode::difference(const char* wanted, const Pieces& expected, const Pieces& actual) {
+  ir::Place text = constant_text(std::string("expected ") + wanted);
+  for (const ir::Place& piece : expected) text = joined(text, piece);
+  text = joined(text, constant_text(", got "));
+  for (const ir::Place& piece : actual) text = joined(text, piece);
+  return text;
+}
+
+// A name, a number, a time; of others the text between marks, which stc test makes a literal of.
+TestCode::Pieces TestCode::literal_of(Typed value) {
+  const Traits traits = traits_of(types(), value.type);
+  if (traits.enumeration) {
+    const ir::Place text = temporary_place(sema_.program.types.string(kValueText));
+    ask<Conversions>().write_enumerator_name(text, value);
+    return {text};
+  }
+  const ir::Place text = text_of(value);
+  if (traits.character) {
+    return marked(types().root_kind(value.type) == ir::Kind::kChar ? '\'' : '"', text);
+  }
+  if (!traits.bits) return {text};
+  // The digits of a byte are two.
+  return marked(static_cast<char>('0' + ir::scalar_size(scalar(value.type)) * 2 % 16), text);
+}
+
+TestCode::Pieces TestCode::literal_of(const ir::Place& text) {
+  const bool is_wide = wide(text.type);
+  return marked(is_wide ? '"' : '\'', ask<Conversions>().narrow_string(text, is_wide));
+}
+
+TestCode::Pieces TestCode::marked(char sort, const ir::Place& text) {
+  return {constant_text({kTestValueBegin, sort}), text, constant_text({kTestValueEnd})};
 }
 
 // Longer than any number, time, date or name of an enumerator that fits a message.

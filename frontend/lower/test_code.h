@@ -18,6 +18,8 @@ class TestCode : public BodyPhase {
   void test_call(const Expr& call, const TestCallRow& row);
 
  private:
+  using Pieces = std::vector<ir::Place>;  // texts, one behind the other
+
   void assert_relation(TestCall call, const std::vector<ExprId>& args, ExprId message);
   void assert_near(const std::vector<ExprId>& args, ExprId message);
   bool is_message(ExprId message);  // reports, as the next one does
@@ -26,6 +28,14 @@ class TestCode : public BodyPhase {
   void verify_calls(const std::vector<ExprId>& args, bool exact, ExprId message);
   void fail_unless(ir::ValueId holds, ExprId message, const std::function<ir::Place()>& what);
   ir::Place constant_text(std::string text);
+  // Structures and arrays (test_parts.cc).
+  void assert_parts(TestCall call, const std::vector<ExprId>& args, ir::TypeId type,
+                    ExprId message);
+  Pieces way_to(const ir::Place& leaf, const ir::Place& whole);
+  ir::Place difference(const char* wanted, const Pieces& expected, const Pieces& actual);
+  Pieces literal_of(Typed value);
+  Pieces literal_of(const ir::Place& text);
+  Pieces marked(char sort, const ir::Place& text);
   ir::Place text_of(Typed value);
   ir::Place joined(const ir::Place& first, const ir::Place& second);
 };

@@ -96,7 +96,7 @@ ST
 expect 1 stc test pump.st wrong_test.st
 said '0 passed, 2 failed, 2 stopped by a trap'
 said 'wrong_test.st:4: speed & delay: expected 10, got 0'
-said 'wrong_test.st:8: expected abd, got abc'
+said "wrong_test.st:8: expected 'abd', got 'abc'"
 said 'wrong_test.st:13: division or MOD by zero'
 said 'wrong_test.st:17: the task ran too long'
 

@@ -1,10 +1,12 @@
 #include "tools/stc/test_run.h"
 
+#include <charconv>
 #include <chrono>
 #include <cstring>
 
 #include "frontend/coverage.h"
 #include "ir/bytecode/symbols.h"
+#include "ir/types/value_text.h"
 #include "vm/exec/execution.h"
 #include "vm/exec/memory.h"
 #include "vm/load/generation.h"
@@ -23,11 +25,45 @@ uint32_t instance_of(const ir::Image& image, const std::string& name) {
   return 0;
 }
 
+// What a message has between marks, as people would write it in ST.
+std::string literal(char sort, std::string_view text) {
+  if (sort == '\'') return ir::string_text(text);
+  if (sort == '"') {
+    std::string wide;
+    for (const char c : text) wide += {c, '\0'};
+    return ir::wstring_text(wide);
+  }
+  uint64_t bits = 0;
+  std::from_chars(text.data(), text.data() + text.size(), bits);
+  char out[24];
+  std::snprintf(out, sizeof out, "16#%0*llX", sort == '0' ? 16 : sort - '0',
+                static_cast<unsigned long long>(bits));
+  return out;
+}
+
+// A text may have a mark in it: the value that is wanted ends where the other one is announced.
+std::string with_literals(std::string_view message) {
+  using frontend::kTestValueBegin, frontend::kTestValueEnd;
+  const std::string between{kTestValueEnd, ',', ' ', 'g', 'o', 't', ' ', kTestValueBegin};
+  std::string out;
+  for (size_t begin; (begin = message.find(kTestValueBegin)) != std::string_view::npos;) {
+    out += message.substr(0, begin);
+    message.remove_prefix(std::min(begin + 1, message.size()));
+    const char sort = message.empty() ? '\'' : message.front();
+    if (!message.empty()) message.remove_prefix(1);
+    size_t end = message.find(between);
+    if (end == std::string_view::npos) end = message.rfind(kTestValueEnd);
+    out += literal(sort, message.substr(0, end));
+    message.remove_prefix(end == std::string_view::npos ? message.size() : end + 1);
+  }
+  return out.append(message);
+}
+
 std::string assertion_message(const ir::Image& image, const vm::Memory& memory) {
   base::Result<ir::Symbol> symbol = ir::find_symbol(image, frontend::kTestMessage);
   if (!symbol.ok()) return {};
   const char* text = reinterpret_cast<const char*>(memory.data()) + symbol->data;
-  return std::string(text, ::strnlen(text, image.types[symbol->type].capacity));
+  return with_literals({text, ::strnlen(text, image.types[symbol->type].capacity)});
 }
 
 void add_hits(const ir::Image& image, const vm::Memory& memory, std::vector<uint64_t>& hits) {
