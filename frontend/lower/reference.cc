@@ -235,6 +235,15 @@ MovedPointer References::pointer_of_sum(ExprId id) {
 
 // Pointers to integers and back (ADR 0005): 64 bits hold the handle's place, 32 bits the flat
 // address.
+// An address has 32 or 64 bits. With iec no number is one, which is an error anyway.
+void References::check_address(ir::TypeId number, base::SourceSpan span) {
+  if (!types().is_scalar(number) || types().is_reference(number)) return;
+  if (ir::scalar_size(scalar(number)) >= 4) return;
+  warning(DiagnosticCode::kImplicitNarrowing, span,
+          "`" + sema_.report.type_text(number) + "` is too small for an address",
+          "take that of a variable: ADR(x)");
+}
+
 ir::ValueId References::convert_reference(Typed from, ir::TypeId to, base::SourceSpan span) {
   const bool reference_source = types().is_reference(from.type);
   const bool reference_target = types().is_reference(to);
@@ -263,6 +272,7 @@ ir::ValueId References::convert_reference(Typed from, ir::TypeId to, base::Sourc
   } else {
     const Traits traits = traits_of(types(), from.type);
     if (codesys && (traits.integer || traits.bits)) {
+      check_address(from.type, span);
       if (is_wide(scalar(from.type))) {
         return code_.machine_convert(from.value, scalar(from.type), ir::Scalar::kU64);
       }
@@ -280,6 +290,10 @@ ir::ValueId References::constant_reference(ExprId id) {
   if (infer(id).flex == Flex::kNull) return build_.constant(ir::Scalar::kU64, 0);
   const auto bits = ask<Constants>().fold_bits(id, elementary(ir::Kind::kLword));
   if (!bits || *bits == 0) return build_.constant(ir::Scalar::kU64, 0);
+  // A literal has the width that its number needs.
+  const Note& note = infer(id);
+  const bool small = note.flex == Flex::kInteger && *bits <= 0xffff;
+  check_address(small ? elementary(ir::Kind::kInt) : note.type, tree_[id].span);
   if (*bits > 0xffffffffu) return build_.constant(ir::Scalar::kU64, *bits);
   return build_.unflat(build_.constant(ir::Scalar::kU32, *bits));
 }

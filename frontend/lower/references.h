@@ -23,6 +23,8 @@ class References : public BodyPhase {
   void bind_reference(const Stmt& stmt);
   ir::ValueId interface_value(ExprId id, ir::TypeId target);
   ir::ValueId constant_reference(ExprId id);
+  // Warns of a number that goes into a pointer, but has too few bits for one.
+  void check_address(ir::TypeId number, base::SourceSpan span);
   ir::ValueId convert_reference(Typed from, ir::TypeId to, base::SourceSpan span);
   bool is_distance(ExprId id);
   ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);

@@ -79,7 +79,8 @@ bool References::is_distance(ExprId id) {
 // Of what is no pointer or reference: interfaces, and numbers of codesys and twincat.
 bool Values::takes_null(ir::TypeId target) const {
   const Traits traits = traits_of(types(), target);
-  const bool number = traits.integer || traits.bits;
+  const bool number =
+      (traits.integer || traits.bits) && ir::scalar_size(types().scalar(target)) >= 4;
   return is_interface(types(), target) || (number && sema_.options.dialect != Dialect::kIec);
 }
 
