@@ -54,6 +54,14 @@ bool find_traps(const Phase& phase, ExprId id, std::vector<std::string>& out) {
   }
 }
 
+// A variable or a part of one, whose way has no calls.
+bool is_place(const Phase& phase, ExprId id) {
+  const Expr& expr = phase.sema().tree[id];
+  const bool part = expr.kind == ExprKind::kMember || expr.kind == ExprKind::kIndex ||
+                    expr.kind == ExprKind::kDeref || expr.kind == ExprKind::kName;
+  return part && !phase.infer(id).calls;
+}
+
 }  // namespace
 
 void check_right_operand(const Phase& phase, const Expr& expr) {
@@ -107,6 +115,10 @@ void check_real_equality(const Phase& phase, const Expr& expr) {
     if (value.integer == 0 && value.real == 0) return;
   }
   if (!real || constant) return;
+  if (is_place(phase, expr.operand) &&
+      text_of(phase.sema(), expr.operand) == text_of(phase.sema(), expr.right)) {
+    return;  // NaN alone differs from itself
+  }
   phase.warning(DiagnosticCode::kRealEquality, expr.span,
                 "reals are compared with " + std::string(operator_text(expr.binary)),
                 "compare the distance: ABS(a - b) < limit");
