@@ -153,4 +153,13 @@ reported 2
 saved '  {warning off W0001} n := d; n := d; {warning restore}'
 reported 2
 cmp -s before.img live.img && fail "no image after the error"
+
+# With iec a quotient of what was cut: both conversions that the help names compile.
+printf 'PROGRAM p VAR w : INT; END_VAR w := (w + 1) MOD 4; END_PROGRAM\n' >cut.st
+expect 0 stc check --dialect iec cut.st
+said 'W0084.*cut to `INT` before it is divided'
+said 'help: convert an operand: \(TO_DINT\(a\) \+ b\) / c; where .* TO_INT\(\(TO_DINT\(a\) \+ b\) / c\)'
+printf 'PROGRAM p VAR w : INT; END_VAR w := TO_INT((TO_DINT(w) + 1) MOD 4); END_PROGRAM\n' >cut.st
+expect 0 stc check --dialect iec cut.st
+grep -q W0084 out err && fail 'the help is warned of'
 exit 0

@@ -127,11 +127,14 @@ void check_real_equality(const Phase& phase, const Expr& expr) {
 void check_wrapped(const Phase& phase, ExprId operand, std::string_view used) {
   const Note& note = phase.infer(operand);
   if (note.width != Width::kWraps || note.constant) return;
-  phase.warning(
-      DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
-      "the result is cut to `" + phase.sema().report.type_text(note.type) + "` before it is " +
-          std::string(used),
-      "convert an operand, so that the operator has the width that is needed: TO_DINT(a)");
+  const std::string type = phase.sema().report.type_text(note.type);
+  phase.warning(DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
+                "the result is cut to `" + type + "` before it is " + std::string(used),
+                used == "divided"
+                    ? "convert an operand: (TO_DINT(a) + b) / c; where that has to be `" + type +
+                          "` again, the whole, too: TO_" + type + "((TO_DINT(a) + b) / c)"
+                    : "convert an operand, so that the operator has the width that is needed: "
+                      "TO_DINT(a)");
 }
 
 }  // namespace frontend
