@@ -79,6 +79,19 @@ ir::ValueId Values::condition(ExprId expr) {
   return value(expr, elementary(ir::Kind::kBool));
 }
 
+// A function with ARRAY[*] has code for each type of array; bounds are constants in each of them.
+bool Statements::differs_by_code(ExprId id) const {
+  if (scope_.meaning == nullptr) return false;
+  for (;;) {
+    const Expr& expr = tree_[id];
+    if (expr.kind == ExprKind::kCall) return true;
+    const bool binary = expr.kind == ExprKind::kBinary;
+    if (!binary && expr.kind != ExprKind::kUnary) return false;
+    if (binary && differs_by_code(expr.right)) return true;
+    id = expr.operand;
+  }
+}
+
 void Statements::if_statement(const Stmt& stmt) {
   ir::BlockId done = build_.new_block();
   bool open = false;  // the way past the last condition is still without a target
@@ -89,7 +102,7 @@ void Statements::if_statement(const Stmt& stmt) {
     ir::BlockId then = build_.new_block();
     ir::BlockId otherwise = last ? done : build_.new_block();
     const Note& note = infer(branch.condition);
-    if (note.constant && note.type.valid()) {
+    if (note.constant && note.type.valid() && !differs_by_code(branch.condition)) {
       warning(DiagnosticCode::kConditionConstant, tree_[branch.condition].span,
               "this condition is always the same");
     }

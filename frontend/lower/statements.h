@@ -21,6 +21,7 @@ class Statements : public BodyPhase {
   void while_statement(const Stmt& stmt);
   void repeat_statement(const Stmt& stmt);
   void check_end(ExprId condition, bool goes_on);
+  bool differs_by_code(ExprId condition) const;
   void leave_loop(const Stmt& stmt);
   void leave_loops();
   bool is_same_row(const Stmt& a, const Stmt& b) const;
