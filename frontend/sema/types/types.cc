@@ -121,6 +121,14 @@ TypeUse Types::resolve_named(const Spec& spec) {
           "make it a function, or pass POINTER TO BYTE and a size: (ADR(x), SIZEOF(x))");
     return {};
   }
+  const auto pou = sema_.declared.pou_names.find(name);
+  if (sema_.library.functions.contains(name) ||
+      (pou != sema_.declared.pou_names.end() &&
+       sema_.declared.pous[pou->second].decl->kind == PouKind::kFunction)) {
+    error(DiagnosticCode::kUnknownType, spec.name.span,
+          "`" + std::string(name) + "` is a function, not a type", "call it without an instance");
+    return {};
+  }
   NearestName nearest(name);
   nearest.offer_all(sema_.declared.types);
   nearest.offer_all(sema_.declared.pou_names);
