@@ -33,6 +33,9 @@ struct Declarations {
   const StructureField* find_field(ir::TypeId structure, std::string_view name) const;
   // The number of a member that is no BIT; -1: there is none.
   int32_t find_member(ir::TypeId structure, std::string_view name) const;
+  // A literal of an enumeration whose later values are computed just now; null: it is none. The
+  // other argument becomes the type of its numbers.
+  const ir::EnumLiteral* forming_literal(std::string_view name, ir::TypeId* base) const;
   // The number of a literal of an enumeration; -1: there is none.
   int32_t find_literal(ir::TypeId enumeration, std::string_view name) const;
   const OpenArray* open_array(ir::TypeId type) const;  // null: it is no ARRAY[*]
@@ -43,8 +46,8 @@ struct Declarations {
   std::deque<Variable> variables;  // by VarId
   std::vector<Name> any_parts;     // any_inputs.cc: variables whose pvalue and so on is named
   bool any_parts_known = false;
-  bool globals_placed = false;     // all of global_order are members; later ones at once
-  bool complete = false;           // all interfaces are resolved; later ones at once
+  bool globals_placed = false;  // all of global_order are members; later ones at once
+  bool complete = false;        // all interfaces are resolved; later ones at once
 
   // By name; types and POUs by their full name.
   NameMap<uint32_t> pou_names;
@@ -53,6 +56,13 @@ struct Declarations {
   NameMap<VarId> globals;
   NameMap<GlobalList> lists;
   NameMap<std::vector<EnumRef>> literals;
+  // Enumerations whose values are computed just now: their literals so far, which the value of a
+  // later one may name.
+  struct Forming {
+    ir::TypeId base;
+    const std::vector<ir::EnumLiteral>* literals = nullptr;
+  };
+  std::vector<Forming> forming;
   std::vector<VarId> global_order;
   const ResourceDecl* resource = nullptr;  // the one that is compiled
   size_t outer_globals = 0;  // of global_order: outside every RESOURCE, when there are several

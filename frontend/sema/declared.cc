@@ -39,6 +39,17 @@ int32_t Declarations::find_literal(ir::TypeId enumeration, std::string_view name
   return found == table->second.end() ? -1 : static_cast<int32_t>(found->second);
 }
 
+const ir::EnumLiteral* Declarations::forming_literal(std::string_view name,
+                                                     ir::TypeId* base) const {
+  if (forming.empty()) return nullptr;
+  for (const ir::EnumLiteral& literal : *forming.back().literals) {
+    if (!ir::same_name(literal.name, name)) continue;
+    *base = forming.back().base;
+    return &literal;
+  }
+  return nullptr;
+}
+
 const OpenArray* Declarations::open_array(ir::TypeId type) const {
   const auto found = open_arrays.find(type);
   return found == open_arrays.end() ? nullptr : &found->second;

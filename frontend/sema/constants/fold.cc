@@ -175,6 +175,12 @@ std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
   const Note& note = infer(id);
   if (!note.variable.valid()) {
     ir::TypeId type = note.type;
+    if (const auto* earlier = sema_.declared.forming_literal(expr.name.text, &type)) {
+      Constant value;
+      value.flex = Flex::kInteger;
+      value.integer = earlier->value;
+      return value;
+    }
     if (note.flex == Flex::kEnum && context_.valid() && is_enum(sema_.program.types, context_)) {
       type = context_;
     } else if (note.flex == Flex::kEnum) {

@@ -239,6 +239,12 @@ Note Expressions::infer_enum_name(const Expr& expr) {
   if (found == sema_.declared.literals.end() && plain &&
       ask<Collection>().use_library_literal(name))
     found = sema_.declared.literals.find(name);
+  Note note;
+  if (plain && sema_.declared.forming_literal(expr.name.text, &note.type) != nullptr) {
+    note.constant = true;
+    note.flex = Flex::kInteger;
+    return note;
+  }
   if (found == sema_.declared.literals.end()) {
     VarId id = plain ? ask<Variables>().program_variable(name, false) : VarId();
     if (id.valid()) return variable_note(id);
@@ -254,7 +260,6 @@ Note Expressions::infer_enum_name(const Expr& expr) {
           pou ? Fix() : ask<Variables>().name_suggestion(name, false));
     return {};
   }
-  Note note;
   note.constant = true;
   const bool several = found->second.size() > 1 || sema_.namespaces.is_ambiguous(expr.name);
   if (several) note.flex = Flex::kEnum;

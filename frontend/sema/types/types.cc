@@ -280,7 +280,9 @@ TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {
       return {};
     }
     if (enumerator.value.valid()) {
+      sema_.declared.forming.push_back({type.base, &type.literals});
       auto value = ask<Constants>().fold_integer(enumerator.value);
+      sema_.declared.forming.pop_back();
       if (!value) return {};
       next = *value;
     }
