@@ -96,12 +96,19 @@ int64_t decimal_magnitude(std::string_view text) {
   return magnitude + (minus ? -size : size);
 }
 
+// Begins with a digit, or a point and a digit.
 double leading_real(std::string_view text) {
-  const bool number = !text.empty() && (is_digit(text[0]) || text[0] == '.');
-  double value = 0;
-  if (!number) {
-    return value;
+  char plain[400];  // without `_`
+  if (text.find('_') != std::string_view::npos) {
+    size_t size = 0;
+    for (const char character : text.substr(0, sizeof plain)) {
+      if (character != '_') {
+        plain[size++] = character;
+      }
+    }
+    text = {plain, size};
   }
+  double value = 0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end.ec == std::errc::result_out_of_range) {
     return decimal_magnitude(text) > 0 ? std::numeric_limits<double>::infinity() : 0;
@@ -143,7 +150,19 @@ uint64_t string_to_u64(String from) {
 double string_to_f64(String from) {
   std::string_view text = without_leading_spaces(text_of(from));
   const bool minus = take_minus(text);
-  const double size = leading_real(text);
+  const bool point = text.starts_with('.');
+  double size = 0;
+  if (text.size() > point && is_digit(text[point])) {
+    const bool based = text.substr(0, 3).find('#') != std::string_view::npos;
+    size = based ? static_cast<double>(leading_number(text)) : leading_real(text);
+  } else {  // the words of *_TO_STRING, or no number
+    const std::string_view word = trimmed(text);
+    if (word.size() != 3 || !starts_with_folded(word, "INF")) {
+      const bool nan = word.size() == 3 && starts_with_folded(word, "NAN");
+      return nan ? std::numeric_limits<double>::quiet_NaN() : 0;
+    }
+    size = std::numeric_limits<double>::infinity();
+  }
   return minus ? -size : size;
 }
 
