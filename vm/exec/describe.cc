@@ -58,6 +58,7 @@ std::string operand_text(const ir::Image& image, const Trap& trap, std::string_v
     case ir::TrapKind::kSubrange:
       return range_text(image, trap, opcode);
     case ir::TrapKind::kConversion:
+      if (opcode == "TRAP") return "";  // behind a comparison, which has the value
       return ": " + ir::scalar_text(image.types, image.types.elementary(ir::Kind::kLreal),
                                     static_cast<uint64_t>(trap.operand[0]));
     default:
