@@ -97,6 +97,50 @@ void WholeBody::end() {
   build_.finish();
 }
 
+// Does it write outside of its instance, call others there, or give them a reference to itself?
+bool reaches_out(const ir::Pou& pou) {
+  std::vector<bool> own(pou.values.size());  // references to the instance or a part of it
+  const auto is_own = [&](ir::ValueId value) { return value.valid() && own[value.index]; };
+  const auto is_outside = [&](const ir::Place& place) {
+    const bool through = std::ranges::any_of(
+        place.steps, [](const ir::Step& step) { return step.kind == ir::StepKind::kDeref; });
+    const bool target = place.base == ir::PlaceBase::kTarget && !is_own(place.value);
+    return through || target || place.base == ir::PlaceBase::kGlobal ||
+           place.base == ir::PlaceBase::kPointee;
+  };
+  for (const ir::Block& block : pou.blocks) {
+    for (const ir::Inst& inst : block.insts) {
+      const ir::Place place = inst.place.valid() ? pou.places[inst.place.index] : ir::Place();
+      switch (inst.op) {
+        case ir::Op::kThis:
+        case ir::Op::kHandle:
+          own[inst.result.index] = inst.op == ir::Op::kThis || !is_outside(place);
+          break;
+        case ir::Op::kStore:
+          if (is_outside(place)) return true;
+          if (place.base == ir::PlaceBase::kArg && is_own(inst.operands[0])) return true;
+          break;
+        case ir::Op::kCopy:
+        case ir::Op::kInit:
+        case ir::Op::kCallInstance:
+          if (is_outside(place)) return true;
+          break;
+        case ir::Op::kCallMethod:
+          if (inst.place.valid() && is_outside(place)) return true;
+          if (!inst.operands.empty() && !is_own(inst.operands[0])) return true;
+          break;
+        case ir::Op::kCallVirtual:
+        case ir::Op::kCallReference:
+          if (!is_own(inst.operands[0])) return true;
+          break;
+        default:
+          break;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void write_body(Sema& sema, uint32_t pou) {
@@ -104,6 +148,8 @@ void write_body(Sema& sema, uint32_t pou) {
   Lowering body(sema, info, pou, sema.program.pous[info.id.index]);
   WholeBody(body, PouScope(info)).write();
   if (info.usual_depth != 0) body.out.recursion_depth = info.usual_depth;
+  const bool begins = info.owner != kNoPou && ir::same_name(info.decl->name.text, kFbInit);
+  info.reaches_out = begins && reaches_out(body.out);
   sema.program.pous[info.id.index] = std::move(body.out);
 }
 

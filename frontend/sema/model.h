@@ -289,6 +289,7 @@ struct PouInfo {
   std::vector<OutputWrite> writes;      // filled by lowering, like callees
   std::vector<uint32_t> callees;
   std::vector<OuterUse> outer_uses;
+  bool reaches_out = false;  // an FB_Init that tells others of its instance, or writes elsewhere
 };
 
 // What __NEW takes from (pools.h).

@@ -16,6 +16,20 @@ bool is_called_by_system(const Tree& tree, const PouInfo& pou) {
          tree.find_attribute(pou.decl->attributes, kCallAfterInit) != nullptr;
 }
 
+// A block that makes itself known, or leaves its mark elsewhere, is used by that.
+bool is_used_by_its_init(const Declarations& declared, const ir::TypeTable& types, ir::TypeId id) {
+  while (types.contains(id) && types[id].kind == ir::Kind::kArray) id = types[id].base;
+  const auto found = declared.pou_by_type.find(id);
+  if (found == declared.pou_by_type.end()) return false;
+  for (uint32_t block = found->second; block != kNoPou; block = declared.pous[block].base) {
+    const auto& code = declared.pous[block].code;
+    const auto init = code.find(kFbInit);
+    if (init == code.end() || init->second.method == kNoPou) continue;
+    if (declared.pous[init->second.method].reaches_out) return true;
+  }
+  return false;
+}
+
 // Covers functions and methods; a prototype has no body that could assign.
 void report_unassigned_results(const Phase& phase) {
   for (const PouInfo& pou : phase.sema().declared.pous) {
@@ -64,6 +78,9 @@ void report_unused(const Phase& phase) {
             "`" + std::string(variable.name.text) + "` is read, but nothing here writes it",
             "give it an initial value, if that is what it is for");
       }
+      continue;
+    }
+    if (is_used_by_its_init(phase.sema().declared, phase.sema().program.types, variable.type)) {
       continue;
     }
     phase.warning(DiagnosticCode::kUnusedVariable, variable.name.span,
