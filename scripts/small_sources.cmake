@@ -86,7 +86,10 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/ir/types/member_finder.cc ${CMAKE_SOURCE_DIR}/ir/types/shared_bytes.cc
      ${CMAKE_SOURCE_DIR}/vm/load/same_code.cc ${CMAKE_SOURCE_DIR}/stdlib/native/dates.cc
      ${CMAKE_SOURCE_DIR}/ir/types/parts.cc ${CMAKE_SOURCE_DIR}/base/source.cc
-     ${CMAKE_SOURCE_DIR}/base/check.cc ${CMAKE_SOURCE_DIR}/base/large_pages.cc)
+     ${CMAKE_SOURCE_DIR}/base/check.cc ${CMAKE_SOURCE_DIR}/base/large_pages.cc
+     ${CMAKE_SOURCE_DIR}/stdlib/native/from_text.cc
+     ${CMAKE_SOURCE_DIR}/online_change/apply/standby.cc
+     ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_exchange.cc)
 # Where a native version spends its time while it is made.
 foreach(name facts allocate allocator_state uses forward simplify numbers)
   list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)

@@ -122,15 +122,53 @@ void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId
     if (group.gone.size() != group.came.size()) continue;
     for (size_t i = 0; i < group.gone.size(); ++i) {
       const std::string old_name = seen_from(group.gone[i]->name, group.came[i]->name);
-      diff.hints[ir::fold_name(group.came[i]->name)] = "; if it is `" + old_name.substr(old_name[0] == '.') +
-                                                       "` renamed, write {renamed from := '" +
-                                                       old_name + "'} before it";
+      diff.hints[ir::fold_name(group.came[i]->name)] =
+          "; if it is `" + old_name.substr(old_name[0] == '.') +
+          "` renamed, write {renamed from := '" + old_name + "'} before it";
     }
   }
   for (FateRow& row : diff.rows) {
     const bool came = row.fate == Fate::kInitialised && row.old_type.empty() && !row.path.empty();
     const auto hint = came ? diff.hints.find(ir::fold_name(row.path.substr(1))) : diff.hints.end();
     if (hint != diff.hints.end()) row.reason += hint->second;
+  }
+}
+
+// "Main.ticks" and "ticks", "GVL.ticks": the last name of both.
+static std::string last_name(const std::string& path) {
+  return ir::fold_name(path.substr(path.rfind('.') + 1));
+}
+
+void propose_reading(const ir::Image& image, std::vector<FateRow>& rows) {
+  std::map<std::pair<std::string, std::string>, std::vector<const FateRow*>> gone;
+  for (const FateRow& row : rows) {
+    if (row.fate == Fate::kDropped && row.may_lose && row.reason == "removed")
+      gone[{last_name(row.path), row.old_type}].push_back(&row);
+  }
+  if (gone.empty()) return;
+  const auto program_of = [&](const std::string& path) -> std::string {
+    for (const uint32_t id : image.program_ids()) {
+      const std::string& name = image.instances[id].name;
+      if (path.size() > name.size() && path[name.size()] == '.' &&
+          path.find('.', name.size() + 1) == std::string::npos &&
+          ir::same_name(path.substr(0, name.size()), name)) {
+        return image.types[image.instances[id].type].name;
+      }
+    }
+    return {};
+  };
+  for (FateRow& row : rows) {
+    if (row.fate != Fate::kInitialised || !row.reason.starts_with("new")) continue;
+    const auto found = gone.find({last_name(row.path), row.new_type});
+    if (found == gone.end() || found->second.size() != 1) continue;
+    const std::string& old_path = found->second[0]->path;
+    const std::string from = program_of(old_path);
+    const std::string to = program_of(row.path);
+    if (from.empty() == to.empty()) continue;
+    const bool list = old_path.find('.') != std::string::npos;
+    row.reason = "new; a {migration of := '" + (to.empty() ? "VAR_GLOBAL" : to) +
+                  "'} with an input {old := '" + (list ? "" : ".") + old_path +
+                  "'} can take over the one that goes";
   }
 }
 

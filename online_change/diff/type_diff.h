@@ -66,6 +66,10 @@ struct TypeDiff {
   std::map<std::string, std::string> hints;
 };
 
+// Where a variable of a program goes and a global of the same name and type comes, or the other way
+// round, the report says how the value goes on. `image`: of the new version.
+void propose_reading(const ir::Image& image, std::vector<FateRow>& rows);
+
 class TypeDiffer {
  public:
   enum class Direction : uint8_t { kForward, kBack };  // kBack: for the undo of new -> old
@@ -90,6 +94,7 @@ class TypeDiffer {
 
   // Types nested deeper than any verified image has, or more pieces than a change may have.
   bool failed() const { return failed_; }
+  bool forward() const { return !back_; }
 
  private:
   using Key = std::pair<ir::TypeId, ir::TypeId>;

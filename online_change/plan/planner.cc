@@ -62,6 +62,7 @@ base::Result<Plan> Planner::run() {
   }
   base::dcheck(area_.empty(), "the steps of each area are in the plan");
   plan_.fates = fates_.take();
+  if (differ_.forward()) propose_reading(new_, plan_.fates);
   ByAddress(old_, new_, plan_).run();
   for (const UpdateStep& step : plan_.steps) {
     if (!step.early()) plan_.boundary_bytes += step.total();
