@@ -46,6 +46,7 @@ struct SwitchReport {
   uint64_t missed = 0;        // releases, because of it; counted by who runs the next cycles
   FateCounts counts;          // what was done
   int64_t ago_ns = 0;         // that it was, when a controller said so
+  vm::MovedForces forces;
 };
 
 // What an undo does with FB_Exit of what goes with it.
@@ -181,8 +182,8 @@ class Change {
   // all.
   template <class Step>
   auto guarded(Step step) -> decltype(step());
-  base::Status stage_steps(base::ByteSpan package, Strategy strategy,
-                           const AtBoundary& at_boundary, TakenOut taken_out);
+  base::Status stage_steps(base::ByteSpan package, Strategy strategy, const AtBoundary& at_boundary,
+                           TakenOut taken_out);
   void give_back(Plan& forward, const ir::Image& next, TakenOut taken_out) const;
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps(bool again);
@@ -224,7 +225,7 @@ class Change {
 
   vm::Controller& controller_;
   State state_ = State::kIdle;
-  std::unique_ptr<Pending> pending_;  // in trial: of the newest edit
+  std::unique_ptr<Pending> pending_;             // in trial: of the newest edit
   std::vector<std::unique_ptr<Pending>> below_;  // other edits on trial, oldest first
   // A generation that was published or prepared and is no longer used; it lives until the next
   // prepare(), because the controller's tables may still refer to it.

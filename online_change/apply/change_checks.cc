@@ -83,8 +83,7 @@ std::vector<ir::DataRange> Change::looked_at() const {
   if (!pending_->keeps_all) return {{0, controller_.image().data_capacity}};
   std::vector<ir::DataRange> ranges;
   for (const vm::LeftOutput& output : pending_->left) {
-    ranges.push_back(
-        {output.symbol.data, pending_->old().layouts[output.symbol.type].size});
+    ranges.push_back({output.symbol.data, pending_->old().layouts[output.symbol.type].size});
   }
   return ranges;
 }
@@ -137,8 +136,10 @@ uint64_t Change::find_losses(std::span<const uint8_t> memory, size_t most,
     if (!is_on(pending_->old(), output, memory)) continue;
     if (count++ < most) rows.push_back(describe_left(output, pending_->old(), memory));
   }
-  for (const std::string& path : next_forces().ended) {
-    if (count++ < most) rows.push_back({path, "forced", "", "loses its force"});
+  const vm::ForceList& ended = next_forces().moved.ended;
+  if (ended == nullptr) return count;
+  for (const vm::Force& force : *ended) {
+    if (count++ < most) rows.push_back({force.path, "forced", "", "loses its force"});
   }
   return count;
 }

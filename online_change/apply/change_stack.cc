@@ -53,7 +53,7 @@ base::Status Change::prime() {
   const auto again = [&]() -> base::Status {
     if (leaves && !pending_->kept_back) pending_->kept_back.emplace(pending_->new_image.image());
     if (pending_->waiting) return base::Ok{};
-    base::Result<std::unique_ptr<vm::Generation>> before = controller_.prepare(pending_->old_image);
+    auto before = controller_.prepare(pending_->old_image, pending_->ended_forces);
     if (!before.ok()) return before.error();
     pending_->waiting = std::move(*before);
     retired_.reset();

@@ -28,7 +28,7 @@ namespace online_change {
 struct CatchingUp {
   // So many in turn that bring nothing, and more would not either.
   static constexpr int kMostInVain = 4;
-  uint64_t cycle = 0;         // in which the last one began
+  uint64_t cycle = 0;            // in which the last one began
   int64_t least_ns = INT64_MAX;  // pause, of the best one
   int in_vain = 0;
   // After a pass: true when more are of no use.
@@ -57,7 +57,7 @@ struct Change::Pending {
         handles(same ? HandleTransfer(old()) : HandleTransfer(old(), new_image.image())),
         leaving(find_leaving(old(), new_image.image())),
         charts(same && same_nets(old(), new_image.image()) ? Charts()
-                                                          : Charts(old(), new_image.image())),
+                                                           : Charts(old(), new_image.image())),
         lost(lost_places(package.forward, old(), new_image.image())),
         left(vm::left_outputs(old(), new_image.image())) {}
   // After stage(): both are known.
@@ -123,7 +123,7 @@ struct Change::Pending {
   // prepared.
   std::unique_ptr<Standby> area;
   CatchingUp catching_up;
-  bool starts = false;           // start_code_runs()
+  bool starts = false;  // start_code_runs()
   // In place where it does, and where FB_Exit runs in the switch; until that is made.
   std::optional<KeptData> kept;
   std::optional<KeptData> kept_back;  // where FB_Exit runs in the undo; taken by prime()
@@ -134,6 +134,7 @@ struct Change::Pending {
   Charts charts;
   LostPlaces lost;
   std::vector<vm::LeftOutput> left;
+  vm::ForceList ended_forces;  // by the switch
   bool allow_loss = false;
   // What the last report said would be lost: with leave for that, nothing else may be (X1).
   bool reported = false;

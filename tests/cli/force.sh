@@ -96,3 +96,24 @@ expect 0 stvm undo --dir plc --yes
 expect 0 stvm get --dir plc --forces
 said '^Main.seen=5'
 ended '.*' 2
+
+# An undo that brings a force back is an event, also with another edit above it; so is the end of the
+# controller, which no force outlives.
+sed 's/added : INT/added, more : INT/' v3.st >v4.st
+expect 0 stvm unforce --dir plc --all
+expect 0 stvm force --dir plc level=44
+expect 0 stvm change --dir plc --yes --allow-loss --allow-overrun v3.st
+expect 0 stvm change --dir plc --yes --allow-overrun v4.st
+expect 0 stvm undo --dir plc --yes
+expect 0 stvm undo --dir plc --dry-run
+said 'force +level  .comes back: 44.'
+expect 0 stvm undo --dir plc --yes
+expect 0 stvm get --dir plc --forces
+said '^level=44  everywhere$'
+expect 0 stvm events --dir plc
+said " warning forced by $who: again, as before the edit that was undone: level=44\$"
+[ "$(grep -c 'again.*: level=44' out)" -eq 1 ] || fail "a force comes back twice"
+[ "$(grep -c 'without a place' out)" -eq 3 ] || fail "a force ends twice"
+expect 0 stvm stop --dir plc
+expect 0 stvm journal --dir plc
+said '^    with the end of the controller: level$'

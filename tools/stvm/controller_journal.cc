@@ -14,6 +14,28 @@ namespace stvm {
 using online_change::Event;
 using online_change::JournalEntry;
 
+namespace {
+
+std::span<const vm::Force> rows_of(const vm::ForceList& list) {
+  return list ? std::span<const vm::Force>(*list) : std::span<const vm::Force>();
+}
+
+// What another force keeps out has not come back.
+std::vector<std::string> forced_again(const vm::Controller& controller,
+                                      std::span<const vm::Force> back) {
+  std::vector<std::string> rows;
+  for (const vm::Force& force : back) {
+    const auto is_it = [&](const vm::Force& now) {
+      return now.path == force.path && now.value == force.value;
+    };
+    if (std::ranges::none_of(controller.forces(), is_it)) continue;
+    rows.push_back(force.path + "=" + vm::value_text(controller.image(), force));
+  }
+  return rows;
+}
+
+}  // namespace
+
 int64_t wall_time_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -60,8 +82,8 @@ base::Error ControllerService::refused(const base::Error& error) {
 }
 
 void ControllerService::note_switch(Event event, const base::Digest& from,
-                                    const online_change::SwitchReport& report,
-                                    int64_t predicted_ns, const std::string& why) {
+                                    const online_change::SwitchReport& report, int64_t predicted_ns,
+                                    const std::string& why) {
   JournalEntry done = entry(event);
   done.text = why;
   done.from = from;
@@ -71,10 +93,15 @@ void ControllerService::note_switch(Event event, const base::Digest& from,
   done.measured_ns = report.pause_ns;
   done.cycle = report.cycle_after;
   store_.note(std::move(done));
-  const auto& ended = controller_.next_forces(controller_.generation()).ended;
-  if (ended.empty()) return;
-  note_done(Event::kUnforced, who_,
-            "without a place in the program that runs now: " + list_text(ended));
+  std::vector<std::string> ended;
+  for (const vm::Force& force : rows_of(report.forces.ended)) ended.push_back(force.path);
+  if (!ended.empty()) {
+    note_done(Event::kUnforced, who_,
+              "without a place in the program that runs now: " + list_text(ended));
+  }
+  const std::vector<std::string> back = forced_again(controller_, rows_of(report.forces.back));
+  if (back.empty()) return;
+  note_done(Event::kForced, who_, "again, as before the edit that was undone: " + list_text(back));
 }
 
 // A snapshot with room for the running program or the staged one.

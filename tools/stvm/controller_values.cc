@@ -155,10 +155,8 @@ base::Bytes ControllerService::force_rows(const std::vector<std::string>& names)
     const bool wanted =
         names.empty() || std::find(names.begin(), names.end(), force.path) != names.end();
     if (!wanted) continue;
-    ir::Symbol alone = force.symbol;
-    alone.data = 0;
     forces.rows.push_back({force.path, image.types.text(force.symbol.type),
-                           ir::format_value(image, alone, force.value), force.reason});
+                           vm::value_text(image, force), force.reason});
   }
   return vm::encode(forces);
 }

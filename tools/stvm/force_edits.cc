@@ -18,12 +18,6 @@ std::string address_of(const ir::Image& image, const vm::Force& force) {
   return "no address";
 }
 
-std::string value_in_image(const ir::Image& image, const vm::Force& force) {
-  ir::Symbol alone = force.symbol;
-  alone.data = 0;
-  return ir::format_value(image, alone, force.value);
-}
-
 class Edit {
  public:
   void compare(const std::string& before, const std::string& after) {
@@ -48,7 +42,7 @@ std::string moved(const ir::Image& old_image, const vm::Force& before, const ir:
   edit.compare(before.path, after.path);
   edit.compare(address_of(old_image, before), address_of(new_image, after));
   edit.compare(old_image.types.text(before.symbol.type), new_image.types.text(after.symbol.type));
-  edit.compare(value_in_image(old_image, before), value_in_image(new_image, after));
+  edit.compare(vm::value_text(old_image, before), vm::value_text(new_image, after));
   if (before.reason.empty() != after.reason.empty()) {
     edit.add("held " + vm::hold_text(after.reason));
   }
@@ -70,7 +64,7 @@ tools::SystemEdits force_edits(const ir::Image& old_image, const std::vector<vm:
   }
   for (const vm::Force& force : next.forces) {
     if (std::find(met.begin(), met.end(), force.path) != met.end()) continue;
-    edits.push_back({"force", force.path, "comes back: " + value_in_image(new_image, force)});
+    edits.push_back({"force", force.path, "comes back: " + vm::value_text(new_image, force)});
   }
   return edits;
 }

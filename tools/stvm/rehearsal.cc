@@ -42,9 +42,7 @@ base::Status Rehearsal::start(const vm::Controller& running,
 base::Status Rehearsal::adopt_forces(const vm::Controller& running) {
   std::vector<vm::NamedValue> forces;
   for (const vm::Force& force : running.forces()) {
-    ir::Symbol alone = force.symbol;
-    alone.data = 0;
-    forces.push_back({force.path, ir::format_value(running.image(), alone, force.value)});
+    forces.push_back({force.path, vm::value_text(running.image(), force)});
   }
   if (forces.empty()) return base::Ok{};
   auto change = controller_->prepare_force(forces);

@@ -6,6 +6,7 @@
 #include "tools/common/files.h"
 #include "tools/common/version.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/event_text.h"
 #include "tools/stvm/key_trust.h"
 
 namespace stvm {
@@ -197,6 +198,14 @@ base::Status ServedResource::end() {
   entry.time_ns = wall_time_ns();
   entry.event = Event::kStopped;
   entry.who = service_->stop_wanted() ? service_->stopped_by() : kWho;
+  std::vector<std::string> forced;
+  for (const vm::Force& force : controller().forces()) forced.push_back(force.path);
+  if (!forced.empty()) {
+    online_change::JournalEntry ended = entry;
+    ended.event = Event::kUnforced;
+    ended.text = "with the end of the controller: " + list_text(forced);
+    store_.note(std::move(ended));
+  }
   entry.from = controller().verified().digest();
   events_->look();
   store_.note(std::move(entry));

@@ -1,6 +1,7 @@
 #include "vm/runtime/controller.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 
@@ -147,8 +148,7 @@ base::Result<std::string> Controller::get(std::string_view path) const {
 }
 
 base::Status Controller::set(std::string_view path, std::string_view value) {
-  const NamedValue row{std::string(path), std::string(value)};
-  base::Result<WriteSet> set = prepare_set({&row, 1});
+  auto set = prepare_set(std::array{NamedValue{std::string(path), std::string(value)}});
   if (!set.ok()) return set.error();
   write(*set);
   return base::Ok{};
@@ -215,16 +215,14 @@ void Controller::use(ForceChange& change) {
 }
 
 base::Status Controller::force(std::string_view path, std::string_view value) {
-  const NamedValue row{std::string(path), std::string(value)};
-  auto change = prepare_force({&row, 1});
+  auto change = prepare_force(std::array{NamedValue{std::string(path), std::string(value)}});
   if (!change.ok()) return change.error();
   use(**change);
   return base::Ok{};
 }
 
 base::Status Controller::unforce(std::string_view path) {
-  const std::string row(path);
-  auto change = prepare_unforce({&row, 1});
+  auto change = prepare_unforce(std::array{std::string(path)});
   if (!change.ok()) return change.error();
   use(**change);
   return base::Ok{};
@@ -237,10 +235,14 @@ const std::vector<Force>& Controller::forces() const {
 const ForcedSet& Controller::next_forces(const Generation& prepared) const {
   return impl_->tables.at(&prepared)->forced;
 }
+MovedForces Controller::take_moved_forces() {
+  return std::exchange(impl_->scheduler.tables().forced.moved, {});
+}
 
 uint32_t Controller::pous_to_make() const { return impl_->native_maker.to_make(); }
 
-base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image) {
+base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage next_image,
+                                                              ForceList back) {
   const Generation* running = impl_->running.get();
   // The maker of machine code would read code slots that are written now.
   if (!impl_->native_maker.is_for(*running)) {
@@ -254,8 +256,7 @@ base::Result<std::unique_ptr<Generation>> Controller::prepare(ir::VerifiedImage 
   base::Status devices = impl_->io_port.prepare((*next)->verified());
   if (!devices.ok()) return devices.error();
   auto tables = std::make_unique<TaskTables>(**next, 0);
-  ForcedSet forced =
-      ForcedSet::adopt(tables->version, *tables->own_code, image(), forces(), impl_->tier);
+  ForcedSet forced = tables->adopted_forces(image(), forces(), impl_->tier, std::move(back));
   tables->exchange_forces(forced);
   TaskTables::compare_outputs(impl_->scheduler.tables(), *tables);
   impl_->tables[next->get()] = std::move(tables);
@@ -371,8 +372,7 @@ base::Status Controller::Impl::leave(const std::vector<uint32_t>& ids, bool chan
   for (const auto& [stamp, before] : marked) {
     stamp.set(stamp.get() == ir::kLeavingStamp ? before : ir::kNewStamp);
   }
-  if (done) return base::Ok{};
-  return last_trap(base::Refusal::kExitFailed);
+  return done ? base::Status(base::Ok{}) : last_trap(base::Refusal::kExitFailed);
 }
 
 base::Error Controller::Impl::last_trap(base::Refusal refusal) const {
@@ -390,7 +390,7 @@ std::unique_ptr<ForceChange> Controller::Impl::prepare_forces(std::vector<Force>
   for (const auto& [generation, other] : tables) {
     if (generation == running.get()) continue;
     change->rows.push_back(
-        {generation, ForcedSet::adopt(other->version, *other->own_code, image(), forces, tier)});
+        {generation, other->adopted_forces(image(), forces, tier, other->forced.moved.back)});
   }
   ForcedSet set = ForcedSet::make(running->verified(), *running->code(), std::move(forces), tier);
   change->rows.push_back({running.get(), std::move(set)});

@@ -48,10 +48,10 @@ struct ControllerOptions {
   uint64_t code_limit = uint64_t{2} << 30;  // bytes of all code slots (two for each POU)
   uint64_t code_slack_percent = CodeSlots::kSlackPercent;  // of each slot, when it is made (D5)
   TierOptions tier = {};
-  bool halted = false;  // begins as after a fault: nothing runs before restart()
-  uint64_t data_limit = 0;  // bytes of all data areas of a change together; 0: no limit
+  bool halted = false;           // begins as after a fault: nothing runs before restart()
+  uint64_t data_limit = 0;       // bytes of all data areas of a change together; 0: no limit
   Timeline* timeline = nullptr;  // is told of all cycles; outlives the controller
-  EventRing* events = nullptr;  // gets traps and overruns; outlives the controller
+  EventRing* events = nullptr;   // gets traps and overruns; outlives the controller
 };
 
 // Times of all scans of a task so far, in ns; p99: 99 % took no longer (histogram.h).
@@ -85,8 +85,8 @@ struct TaskStatus {
   TimeSummary delay;      // from the release to the start: jitter
   bool stopped = false;   // by a trap
   bool freewheeling = false;
-  bool once = false;  // start code: at cold start and after changes
-  int64_t recent_ns = 0;  // the longest run of the last scans (recent_longest.h)
+  bool once = false;           // start code: at cold start and after changes
+  int64_t recent_ns = 0;       // the longest run of the last scans (recent_longest.h)
   TaskActivity activity = {};  // at another instant than the rest (Controller::activity)
 };
 
@@ -155,13 +155,13 @@ class Controller {
   std::optional<TaskTimes> task_times(std::string_view name) const;
   // At a boundary: forgets how long scans took and how late they began; counters go on.
   void reset_times();
-  uint64_t missed_releases() const;              // of all tasks
+  uint64_t missed_releases() const;  // of all tasks
   // At a boundary: what the last scans of all cyclic tasks take of their periods, in thousandths.
   uint64_t load() const;
   // At a boundary; nothing is allocated where `out` has the task's name already.
   void copy_task(size_t number, TaskSample& out) const;
-  const Traps& traps() const;                    // the last 32
-  uint64_t trap_count() const;                   // all that there were
+  const Traps& traps() const;   // the last 32
+  uint64_t trap_count() const;  // all that there were
 
   // Values, at a boundary. Paths as in symbols.h.
   base::Result<std::string> get(std::string_view path) const;
@@ -189,20 +189,22 @@ class Controller {
   base::Status force(std::string_view path, std::string_view value);
   base::Status unforce(std::string_view path);
   const std::vector<Force>& forces() const;
-  // What becomes of the forces with this generation, which was prepared; what became of them, when
-  // it has been published.
+  // What becomes of the forces with this generation, which was prepared.
   const ForcedSet& next_forces(const Generation& prepared) const;
 
   // --- for online change (online_change/apply) --------------------------------
   // Builds a second generation beside the running one. Touches nothing that runs; whatever was
-  // prepared or published before can run no more. kTooLarge when its code has no room.
-  base::Result<std::unique_ptr<Generation>> prepare(ir::VerifiedImage image);
+  // prepared or published before can run no more. kTooLarge when its code has no room. `back`:
+  // forces on variables of this image that begin with it again.
+  base::Result<std::unique_ptr<Generation>> prepare(ir::VerifiedImage image, ForceList back = {});
   const CodeSlots& code_slots() const;
   // At a boundary only: one pointer store makes `next` the running generation, and
   // re-derives task, I/O and force tables that were prepared by prepare(). Tasks keep scan
   // counts and phase by name. Returns the generation that ran until now.
   // With `data`, that is exchanged with the running data area by the same store (C6).
   std::unique_ptr<Generation> publish(std::unique_ptr<Generation> next, Memory* data = nullptr);
+  // Once, after publish(): what it did to forces.
+  MovedForces take_moved_forces();
   // Off the control thread: devices that only a version which never runs again has are closed.
   void settle_devices();
   // Off the control thread, after a switch that did not wait for machine code (Making::kBeside):

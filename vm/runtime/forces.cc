@@ -13,9 +13,7 @@ base::Bytes carry_over(const ir::Image& from, const Force& force, const ir::Imag
   bool same_type = from.types.text(force.symbol.type) == to.types.text(symbol.type) &&
                    force.symbol.bit_mask == symbol.bit_mask;
   if (same_type && from.types[force.symbol.type].kind != ir::Kind::kEnum) return force.value;
-  ir::Symbol alone = force.symbol;
-  alone.data = 0;
-  std::string text = ir::format_value(from, alone, force.value);
+  std::string text = value_text(from, force);
   // A whole REAL is what an integer may be, too.
   const auto is_real = [](const ir::Type& type) {
     return type.kind == ir::Kind::kReal || type.kind == ir::Kind::kLreal;
@@ -39,6 +37,12 @@ bool share_inputs(const Force& a, const Force& b, const ProcessImage& process_im
 }
 
 }  // namespace
+
+std::string value_text(const ir::Image& image, const Force& force) {
+  ir::Symbol alone = force.symbol;
+  alone.data = 0;
+  return ir::format_value(image, alone, force.value);
+}
 
 bool overlap(const Force& a, const Force& b, const ProcessImage& process_image) {
   if (share_inputs(a, b, process_image)) return true;
@@ -82,13 +86,17 @@ ForcedSet ForcedSet::make(const ir::VerifiedImage& image, const CodeTable& own,
 
 ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
                            const ir::Image& from, const std::vector<Force>& rows,
-                           const TierOptions& tier) {
-  if (rows.empty()) return {};
+                           const TierOptions& tier, ForceList back) {
+  if (rows.empty() && back == nullptr) return {};
   const ir::Image& to = image.image();
   const RenamedPaths paths(from, to);
   const ProcessImage process_image(to);
   std::vector<Force> forces;
-  std::vector<std::string> ended;
+  std::vector<Force> ended;
+  const auto is_free = [&](const Force& force) {
+    const auto meets = [&](const Force& other) { return overlap(force, other, process_image); };
+    return std::none_of(forces.begin(), forces.end(), meets);
+  };
   for (const Force& row : rows) {
     Force force = row;
     force.path = paths.find(row);
@@ -96,15 +104,20 @@ ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
     base::Bytes value;
     if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
     force = {force.path, symbol.ok() ? *symbol : ir::Symbol(), std::move(value)};
-    const auto meets = [&](const Force& other) { return overlap(force, other, process_image); };
-    if (force.value.empty() || std::any_of(forces.begin(), forces.end(), meets)) {
-      ended.push_back(row.path);
+    if (force.value.empty() || !is_free(force)) {
+      ended.push_back(row);
     } else {
       forces.push_back(std::move(force));
     }
   }
+  if (back != nullptr) {
+    for (const Force& force : *back) {
+      if (is_free(force)) forces.push_back(force);
+    }
+  }
   ForcedSet set = make(image, own, std::move(forces), tier);
-  set.ended = std::move(ended);
+  if (!ended.empty()) set.moved.ended = std::make_shared<std::vector<Force>>(std::move(ended));
+  set.moved.back = std::move(back);
   return set;
 }
 

@@ -19,6 +19,7 @@ struct Force {
   // Why it holds at the boundaries of cycles only (ForcedCode); "": it holds everywhere.
   std::string reason = {};
 };
+std::string value_text(const ir::Image& image, const Force& force);
 // Have they bytes in common, or bits of %I? Of members of a union and of inputs at overlapping
 // addresses only one can be held.
 bool overlap(const Force& a, const Force& b, const ProcessImage& process_image);
@@ -29,10 +30,21 @@ struct NamedValue {
   std::string value;
 };
 
+// Shared, so that a boundary neither takes nor frees memory for it. Null: none.
+using ForceList = std::shared_ptr<const std::vector<Force>>;
+
+// What a switch to a version does to forces.
+struct MovedForces {
+  ForceList ended;  // those that were not adopted, on variables of the version before
+  // On variables of this one: what the switch away from it has ended. Those whose place is free are
+  // forced again.
+  ForceList back;
+};
+
 // The forces on a generation's variables.
 struct ForcedSet {
   std::vector<Force> forces;
-  std::vector<std::string> ended;          // paths of those that were not adopted
+  MovedForces moved;  // of a version that waits
   // What forced inputs are as %I, and which bits of %I these are: variables at overlapping
   // addresses see each other's forces. Empty: no input is forced.
   base::Bytes inputs;
@@ -42,10 +54,11 @@ struct ForcedSet {
   // Finds out how `forces` hold on variables of the image, and makes the code.
   static ForcedSet make(const ir::VerifiedImage& image, const CodeTable& own,
                         std::vector<Force> forces, const TierOptions& tier);
-  // Adopts forces of another image by path; what has no place of its kind here ends.
+  // Adopts forces of another image by path; what has no place of its kind here ends, and what had
+  // ended when this version was left comes `back`.
   static ForcedSet adopt(const ir::VerifiedImage& image, const CodeTable& own,
                          const ir::Image& from, const std::vector<Force>& forces,
-                         const TierOptions& tier);
+                         const TierOptions& tier, ForceList back);
 };
 
 // What prepare_force() made: for every version of the program that runs or can come to run.

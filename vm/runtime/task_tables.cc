@@ -113,11 +113,7 @@ TaskTables::TaskTables(const Generation& made_for, int64_t first_release_ns)
 
 void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
   std::fill(waiting_mask.begin(), waiting_mask.end(), uint8_t{0});
-  // Versions that wait know what would end; what had ended before does not end again.
-  std::erase_if(forced.ended, [&](const std::string& path) {
-    const auto is_it = [&](const Force& force) { return force.path == path; };
-    return std::ranges::none_of(previous.forced.forces, is_it);
-  });
+  previous.forced.moved.back = forced.moved.ended;
   std::copy_n(previous.inputs.begin(), std::min(inputs.size(), previous.inputs.size()),
               inputs.begin());
   const base::Bytes& received =
@@ -240,6 +236,11 @@ int64_t TaskTables::next_cycle_ns(int64_t cycle_start_ns) const {
   if (tasks.empty()) return cycle_start_ns + base_period_ns;
   int64_t distance = (tasks.front().next_release_ns - cycle_start_ns) % base_period_ns;
   return cycle_start_ns + (distance > 0 ? distance : base_period_ns + distance);
+}
+
+ForcedSet TaskTables::adopted_forces(const ir::Image& from, const std::vector<Force>& forces,
+                                     const TierOptions& tier, ForceList back) const {
+  return ForcedSet::adopt(version, *own_code, from, forces, tier, std::move(back));
 }
 
 void TaskTables::exchange_forces(ForcedSet& set) {

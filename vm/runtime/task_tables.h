@@ -47,11 +47,11 @@ struct TaskSlot {
   bool io_lost = false;         // its next scan begins with a trap
   uint64_t begun_in_cycle = 0;  // number of the cycle, from 1: once in each at most
   TaskState state = TaskState::kWaiting;
-  bool late = false;    // a release has found it not done
-  bool unsent = false;  // complete outputs of it are in TaskTables::outputs, not sent yet
-  bool held = false;    // complete outputs of it are in its own `outputs`
-  bool lasting = false;     // its code is done, and it lasts until run_ns is scan_ns
-  int64_t scan_ns = 0;      // Clock::scan_ns
+  bool late = false;     // a release has found it not done
+  bool unsent = false;   // complete outputs of it are in TaskTables::outputs, not sent yet
+  bool held = false;     // complete outputs of it are in its own `outputs`
+  bool lasting = false;  // its code is done, and it lasts until run_ns is scan_ns
+  int64_t scan_ns = 0;   // Clock::scan_ns
 
   uint32_t event = 0;        // data offset of the BOOL whose edges release it; 0: none
   bool event_level = false;  // when it was looked at last
@@ -88,6 +88,9 @@ struct TaskTables {
   static void compare_outputs(TaskTables& a, TaskTables& b);
   // The set and its code come into force, and `set` has what was before. Nothing is freed.
   void exchange_forces(ForcedSet& set);
+  // ForcedSet::adopt() for this version.
+  ForcedSet adopted_forces(const ir::Image& from, const std::vector<Force>& forces,
+                           const TierOptions& tier, ForceList back) const;
 
   const Generation* generation;
   std::shared_ptr<const CodeTable> own_code;  // of the generation, when it was made
@@ -100,8 +103,8 @@ struct TaskTables {
   ProcessImage process_image;
   SharedGlobals shared;
   SafeOutputs safe;
-  base::Bytes inputs;        // as received last in a cycle
-  base::Bytes outputs;       // as sent next in a cycle: complete results only (B5)
+  base::Bytes inputs;   // as received last in a cycle
+  base::Bytes outputs;  // as sent next in a cycle: complete results only (B5)
   // Where tasks exchange by themselves (B12), else empty: as received last and as sent last.
   base::Bytes newest_inputs;
   base::Bytes sent_outputs;
@@ -117,7 +120,7 @@ struct TaskTables {
   // known of its writers.
   bool same_outputs = false;
   ForcedSet forced;
-  base::Bytes seen_inputs;      // with the forced ones in them
+  base::Bytes seen_inputs;  // with the forced ones in them
   // An input as the program sees it.
   uint8_t input(size_t byte, uint8_t received) const {
     if (byte >= forced.input_mask.size()) return received;
