@@ -6,6 +6,7 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/rename_rules.h"
+#include "ir/bytecode/symbols.h"
 #include "ir/types/listed_name.h"
 #include "ir/types/member_finder.h"
 
@@ -326,6 +327,11 @@ std::optional<Image> under_new_names(const Image& old_image, const Image& next) 
     programs.push_back({next.instances[id].name, next.instances[id].old_name});
   }
   return Renamer(old_image, next.types, next.globals, std::move(programs)).run();
+}
+
+std::string own_path(const Image& image, const Image& renamed, std::string_view path) {
+  const base::Result<Symbol> symbol = find_symbol(renamed, path);
+  return symbol.ok() ? path_of(image, *symbol) : std::string();
 }
 
 }  // namespace ir

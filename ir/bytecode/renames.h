@@ -23,6 +23,9 @@ namespace ir {
 std::optional<Image> under_new_names(const Image& old_image, const Program& next);
 std::optional<Image> under_new_names(const Image& old_image, const Image& next);
 
+// What `renamed`, which is `image` under other names, calls `path`, in `image`; "": no variable.
+std::string own_path(const Image& image, const Image& renamed, std::string_view path);
+
 // Owns the copy where there is one. Borrows both images.
 class OldUnderNewNames {
  public:

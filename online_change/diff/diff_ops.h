@@ -26,4 +26,6 @@ bool carve(std::vector<DiffOp>& ops, uint32_t to, uint32_t size, uint64_t leaves
 // Does nothing move, change, come or go?
 bool is_identity(const std::vector<DiffOp>& ops);
 
+std::string renamed_from(const std::string& name);
+
 }  // namespace online_change

@@ -106,7 +106,7 @@ void TypeDiffer::move_parts(TypeDiff& diff, TypeId old_type, TypeId new_type) {
     target.type = to.type;
     const size_t first = diff.rows.size();
     append_value(diff, inner, source, from.at, target, to.at, true,
-                 back_ ? "" : "renamed from `" + source.name + "`");
+                 back_ ? "" : renamed_from(source.name));
     for (size_t i = first; i < diff.rows.size(); ++i) {
       FateRow& row = diff.rows[i];
       if (row.fate != Fate::kDropped) row.old_path = from.path + row.path.substr(to.path.size());

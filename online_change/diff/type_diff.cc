@@ -20,7 +20,6 @@ using ir::TypeId;
 constexpr const char* kBecomesConstant = "constant";
 constexpr const char* kBecomesInput = "an input now";
 
-
 // Members by name; a program may have very many.
 class MemberNames {
  public:
@@ -334,17 +333,19 @@ void TypeDiffer::add_member(TypeDiff& diff, const Member& old_member, uint32_t f
     add_new_member(diff, new_member, to, input ? kBecomesInput : kBecomesConstant);
     diff.rows.back().old_type = old_.types.text(old_member.type);
     diff.rows.back().may_lose = !back_ && !old_member.constant && !is_input(old_member);
-    const std::string note = rename_note(old_member);
+    const std::string note = rename_note(old_member, new_member);
     if (!note.empty()) diff.rows.back().reason = note + ", " + diff.rows.back().reason;
     return;
   }
-  append_value(diff, inner, old_member, from, new_member, to, is_area, rename_note(old_member));
+  append_value(diff, inner, old_member, from, new_member, to, is_area,
+               rename_note(old_member, new_member));
 }
 
 // "renamed from `x`"; "" for a variable that kept its name.
-std::string TypeDiffer::rename_note(const Member& old_member) const {
-  if (!renamed_ || !old_member.old_name.valid()) return {};
-  return "renamed from `" + old_.types.old_name(old_member.old_name) + "`";
+std::string TypeDiffer::rename_note(const Member& old_member, const Member& new_member) const {
+  const ir::OldNameId rule = (back_ ? new_member : old_member).old_name;
+  if (!renamed_ || !rule.valid()) return {};
+  return renamed_from(back_ ? new_member.name : old_.types.old_name(rule));
 }
 
 void TypeDiffer::append_value(TypeDiff& diff, const TypeDiff& inner, const Member& old_member,

@@ -73,7 +73,8 @@ void propose_reading(const ir::Image& image, std::vector<FateRow>& rows);
 class TypeDiffer {
  public:
   enum class Direction : uint8_t { kForward, kBack };  // kBack: for the undo of new -> old
-  // `renamed`: the old image is one with the names of the new one (ir/bytecode/renames.h).
+  // `renamed`: the old image is one with the names of the new one (ir/bytecode/renames.h); on the
+  // way back, the new one with those of the old one.
   // `migrations` outlives it.
   TypeDiffer(const ir::Image& old_image, const ir::Image& new_image, Direction direction,
              bool renamed, const Migrations& migrations)
@@ -81,7 +82,7 @@ class TypeDiffer {
         new_(new_image),
         migrations_(migrations),
         back_(direction == Direction::kBack),
-        renamed_(renamed && direction == Direction::kForward) {}
+        renamed_(renamed) {}
 
   // The members of two instance types, two structures or the two globals. Every op of an area
   // that moves has its row in `rows`, one per variable.
@@ -120,7 +121,7 @@ class TypeDiffer {
                     std::string note);
   void move_parts(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type);
   uint64_t count_leaves(const ir::Image& image, ir::TypeId type);
-  std::string rename_note(const ir::Member& old_member) const;
+  std::string rename_note(const ir::Member& old_member, const ir::Member& new_member) const;
   void explain_rules(TypeDiff& diff, ir::TypeId old_area, ir::TypeId new_area) const;
   void propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
   void propose_migration(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;

@@ -26,7 +26,8 @@ Planner::Planner(const ir::Image& old_image, const ir::Image& new_image,
                  TypeDiffer::Direction direction, bool renamed)
     : old_(old_image),
       new_(new_image),
-      renamed_(renamed && direction == TypeDiffer::Direction::kForward),
+      renamed_(renamed),
+      back_(direction == TypeDiffer::Direction::kBack),
       old_data_(old_image),
       new_data_(new_image),
       old_areas_(old_image),
@@ -80,7 +81,7 @@ void Planner::carry(uint32_t old_id, uint32_t new_id) {
   used_here_.clear();
   calls_.end_instance();
   const bool whole = stays_whole(instance);
-  if (renamed_ && from.old_name.valid()) rename_row(instance, whole);
+  if (renamed_ && (back_ ? to : from).old_name.valid()) rename_row(instance, whole);
   if (whole) {
     plan_.counts.kept += instance.diff->leaves;
     return;

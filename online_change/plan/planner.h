@@ -18,7 +18,7 @@ namespace online_change {
 
 class Planner {
  public:
-  // `renamed`: the old image is one with the names of the new one (ir/bytecode/renames.h).
+  // `renamed`: as TypeDiffer has it.
   Planner(const ir::Image& old_image, const ir::Image& new_image, TypeDiffer::Direction direction,
           bool renamed);
   base::Result<Plan> run();
@@ -75,6 +75,7 @@ class Planner {
   const ir::Image& old_;
   const ir::Image& new_;
   bool renamed_;
+  bool back_;
   InitialData old_data_;
   InitialData new_data_;
   Areas old_areas_;
@@ -84,8 +85,8 @@ class Planner {
   Plan plan_;
   MigrationCalls calls_;  // their code is the new version's, on the way back too
   FateRows fates_;
-  std::vector<uint32_t> row_of_new_;        // of added instances, by ID
-  std::vector<uint32_t> row_of_old_;        // of dropped ones
+  std::vector<uint32_t> row_of_new_;  // of added instances, by ID
+  std::vector<uint32_t> row_of_old_;  // of dropped ones
   // By old ID: is there a variable in it, or in an instance in it, that the program could write?
   // Empty when no instance goes.
   std::vector<bool> live_inside_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "online_change/diff/diff_ops.h"
 #include "online_change/plan/planner.h"
 
 namespace online_change {
@@ -83,7 +84,7 @@ void Planner::rename_row(const Carried& instance, bool whole) {
     FateRow row;
     row.path = new_.instance_path(instance.new_id);
     row.old_type = row.new_type = new_.types.text(new_.instances[instance.new_id].type);
-    row.reason = "renamed from `" + base_name(old_.types.old_name(from.old_name)) + "`";
+    row.reason = renamed_from(base_name(back_ ? from.name : old_.types.old_name(from.old_name)));
     return row;
   });
 }

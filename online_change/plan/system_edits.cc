@@ -5,7 +5,6 @@
 #include <map>
 
 #include "ir/bytecode/located_layouts.h"
-#include "ir/bytecode/renames.h"
 #include "ir/program/task_policy.h"
 #include "ir/types/address_text.h"
 #include "ir/types/location.h"
@@ -87,8 +86,8 @@ class SystemEdits {
 
   // By path: what is at an address in only one version may be elsewhere in the other, or nowhere.
   void addresses() {
-    if (same_instances_ && old_.layouts.is_one_with(new_.layouts) &&
-        old_.globals == new_.globals && old_.io == new_.io) {
+    if (same_instances_ && old_.layouts.is_one_with(new_.layouts) && old_.globals == new_.globals &&
+        old_.io == new_.io) {
       return;
     }
     old_natural_ = ir::located_layouts(old_);
@@ -278,8 +277,7 @@ class SystemEdits {
 }  // namespace
 
 std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image& new_image) {
-  const ir::OldUnderNewNames old(old_image, new_image);
-  return SystemEdits(old.image(), new_image).run();
+  return SystemEdits(old_image, new_image).run();
 }
 
 }  // namespace online_change

@@ -16,8 +16,8 @@ struct SystemEdit {
   std::string name;
   std::string what;  // "T#10ms -> T#20ms", "new", "removed", "%QX0.0 -> %QX7.7"
 };
-// Variables and programs that both versions have, under the names of the new one; addresses, tasks
-// and devices also when only one has them.
+// Variables and programs that both versions have; addresses, tasks and devices also when only one
+// has them. What was renamed has one name in both (ir/bytecode/renames.h).
 std::vector<SystemEdit> system_edits(const ir::Image& old_image, const ir::Image& new_image);
 
 // By name, in order of what is said of each.

@@ -25,14 +25,21 @@ void add_unit_edits(const ir::Image& old_image, const ir::Image& new_image, Syst
 
 }  // namespace
 
-SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_image) {
-  SystemEdits edits = online_change::system_edits(old_image, new_image);
-  const ir::OldUnderNewNames old(old_image, new_image);
-  for (const vm::LeftOutput& output : vm::left_outputs(old.image(), new_image)) {
+SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_image, bool back) {
+  const ir::OldUnderNewNames names(back ? new_image : old_image, back ? old_image : new_image);
+  const ir::Image& before = back ? old_image : names.image();
+  const ir::Image& after = back ? names.image() : new_image;
+  SystemEdits edits = online_change::system_edits(before, after);
+  for (const vm::LeftOutput& output : vm::left_outputs(before, after)) {
     edits.push_back({"output", ir::address_text(output.address),
                      "`" + output.path + "` is no longer written by any code"});
   }
-  add_unit_edits(old.image(), new_image, edits);
+  add_unit_edits(before, after, edits);
+  for (auto& edit : edits) {
+    if (!back || edit.kind != "variable") continue;
+    std::string own = ir::own_path(new_image, after, edit.name);
+    if (!own.empty()) edit.name = std::move(own);
+  }
   return edits;
 }
 

@@ -6,6 +6,8 @@
 
 namespace tools {
 
-SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_image);
+// What was renamed is what it was. `back`: the new image is the one that undo brings back.
+SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_image,
+                             bool back = false);
 
 }  // namespace tools

@@ -1,8 +1,10 @@
 // The fate report of a change that is staged, rehearsed or on trial (its way back), page by page.
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <vector>
 
+#include "ir/bytecode/renames.h"
 #include "online_change/diff/initial_data.h"
 #include "tools/common/old_names.h"
 #include "tools/stvm/controller_service.h"
@@ -133,9 +135,9 @@ base::Result<base::Bytes> ControllerService::every_page(uint64_t first,
   uint64_t values = 0;
   for (const online_change::UpdateStep& step : plan.steps) values += step.count;
   if (values > kMostEvery) {
-    return base::Error{base::Refusal::kTooLarge,
-                       "the change touches " + std::to_string(values) + " values; --all shows " +
-                           std::to_string(kMostEvery) + " at most"};
+    return base::Error{base::Refusal::kTooLarge, "the change touches " + std::to_string(values) +
+                                                     " values; --all shows " +
+                                                     std::to_string(kMostEvery) + " at most"};
   }
   if (!every_) every_.emplace(plan, live_->image(), next);
   const tools::OldNames old_names(controller_.image(), live_->image());
@@ -157,8 +159,14 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
   uint64_t row = first;
   const uint64_t end = std::min<uint64_t>(plan.fates.size(), first + kLinesPerPage);
   const std::vector<const UpdateStep*> known = with_bytes(plan, first, end);
+  std::optional<ir::OldUnderNewNames> comes;  // by undo: the plan has the names of what runs
+  if (back) comes.emplace(next.image(), controller_.image());
   for (; row < end && bytes <= vm::kChunkBytes; ++row) {
     page.lines.push_back(live_line(plan.fates[row], known[row - first], next.image(), back));
+    std::string& path = page.lines.back().row.path;
+    const bool named = comes && plan.fates[row].fate != Fate::kDropped;
+    std::string own = named ? ir::own_path(next.image(), comes->image(), path) : std::string();
+    if (!own.empty()) path = std::move(own);
     bytes += line_bytes(page.lines.back());
   }
   page.next = row < plan.fates.size() ? row : 0;
@@ -168,7 +176,7 @@ base::Result<base::Bytes> ControllerService::group_page(uint64_t first,
   }
   page.edits = shown_edits(controller_.verified(), next);
   const vm::Controller& controller = rehearses() ? rehearsal_->controller() : controller_;
-  std::ranges::move(shown_system(controller, next, looked_at().next_forces()),
+  std::ranges::move(shown_system(controller, next, looked_at().next_forces(), back),
                     std::back_inserter(page.system));
   return encode(page);
 }

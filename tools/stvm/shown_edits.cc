@@ -35,11 +35,11 @@ std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids
 
 tools::SystemEdits shown_system(const vm::Controller& controller,
                                 const ir::VerifiedImage& new_image,
-                                const vm::ForcedSet& next_forces) {
+                                const vm::ForcedSet& next_forces, bool back) {
   const ir::VerifiedImage& old_image = controller.verified();
   tools::SystemEdits edits =
       force_edits(old_image.image(), controller.forces(), new_image.image(), next_forces);
-  for (auto& edit : tools::all_system_edits(old_image.image(), new_image.image())) {
+  for (auto& edit : tools::all_system_edits(old_image.image(), new_image.image(), back)) {
     edits.push_back(std::move(edit));
   }
   for (auto& edit : tools::source_edits(old_image.encoded(), new_image.encoded())) {

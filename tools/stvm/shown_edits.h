@@ -14,7 +14,7 @@ tools::PouEdits shown_edits(const ir::VerifiedImage& old_image, const ir::Verifi
 // Forces first. The last row says how many are left out. `next_forces`: Change::next_forces().
 tools::SystemEdits shown_system(const vm::Controller& controller,
                                 const ir::VerifiedImage& new_image,
-                                const vm::ForcedSet& next_forces);
+                                const vm::ForcedSet& next_forces, bool back);
 
 // "Main.pump, Main.tank and 3 more": of an image, by their numbers.
 std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids);

@@ -17,13 +17,8 @@ class RenamedPaths {
   std::string find(const Force& force) const {
     if (!there_.renamed() && !back_.renamed()) return force.path;
     const std::string before = ir::path_of(from_, force.symbol);
-    std::string after;
-    if (there_.renamed()) {
-      after = ir::path_of(there_.image(), force.symbol);
-    } else {
-      base::Result<ir::Symbol> symbol = ir::find_symbol(back_.image(), before);
-      if (symbol.ok()) after = ir::path_of(to_, *symbol);
-    }
+    const std::string after = there_.renamed() ? ir::path_of(there_.image(), force.symbol)
+                                               : ir::own_path(to_, back_.image(), before);
     return before == after ? force.path : after;
   }
 
