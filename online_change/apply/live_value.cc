@@ -3,33 +3,12 @@
 #include <cstring>
 
 #include "ir/types/value_text.h"
-#include "online_change/diff/value_conversion.h"
+#include "online_change/diff/stored_value.h"
 
 namespace online_change {
 namespace {
 
-using ir::Kind;
 using ir::TypeId;
-
-// As in ConstValue: sign-extended, REAL as its 32 bits.
-uint64_t load(const ir::Image& image, TypeId type, const uint8_t* at) {
-  ir::Scalar scalar = image.types.scalar(type);
-  uint32_t size = ir::scalar_size(scalar);
-  uint64_t bits = 0;
-  std::memcpy(&bits, at, size);
-  if (!ir::is_signed(scalar) || size == 8) return bits;
-  uint32_t unused = 64 - size * 8;
-  return static_cast<uint64_t>(static_cast<int64_t>(bits << unused) >> unused);
-}
-
-bool is_string(const ir::Image& image, TypeId type) {
-  Kind kind = image.types[type].kind;
-  return kind == Kind::kString || kind == Kind::kWstring;
-}
-
-uint32_t unit_of(const ir::Image& image, TypeId type) {
-  return image.types[type].kind == Kind::kWstring ? 2 : 1;
-}
 
 std::string value_text(const ir::Image& image, TypeId type, const uint8_t* at) {
   if (!is_string(image, type)) {
@@ -67,17 +46,8 @@ const char* Conversions::convert(const ConvertedValues& how, uint32_t index, con
       return nullptr;
     }
   }
-  if (is_string(from_, how.old_type)) {
-    return convert_string({source, source_size(how)}, unit_of(from_, how.old_type), out,
-                          unit_of(to_, how.new_type));
-  }
-  Converted value = convert_scalar(from_.types, how.old_type, to_.types, how.new_type,
-                                   load(from_, how.old_type, source));
-  if (value.initialise) {
-    to_initial_.read(to, out);
-  } else {
-    std::memcpy(out.data(), &value.bits, out.size());
-  }
+  const Converted value = convert_stored(from_, how.old_type, source, to_, how.new_type, out);
+  if (value.initialise) to_initial_.read(to, out);
   return value.loss;
 }
 

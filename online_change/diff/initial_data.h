@@ -18,13 +18,14 @@ class InitialData {
   // Are `size` bytes here at `offset` the same as those there at `other_offset`?
   // Cost: the runs and bytes involved; constant where neither side has a run.
   bool equal(uint32_t offset, const InitialData& other, uint32_t other_offset, uint32_t size) const;
+  // False: zeros, known without a look at them.
+  bool has_run(uint32_t offset, uint32_t size) const;
   bool is_zero(uint32_t offset, uint32_t size) const;
   uint32_t word(uint32_t offset) const;  // an instance slot
 
  private:
   // First run that ends after `offset`.
   size_t first_run(uint32_t offset) const;
-  bool has_run(uint32_t offset, uint32_t size) const;
   const std::vector<ir::DataRun>& runs_;
 };
 

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
+#include "online_change/diff/stored_value.h"
 #include "online_change/plan/area_steps.h"
 #include "online_change/plan/by_address.h"
 #include "online_change/plan/pause.h"
@@ -137,13 +138,32 @@ void Planner::apply(const Carried& instance, const DiffOp& op) {
 }
 
 bool Planner::initial_equal(const Carried& instance, const DiffOp& op) const {
-  for (uint32_t i = 0; i < op.count; ++i) {
-    if (!old_data_.equal(instance.from + op.from + i * op.from_stride, new_data_,
-                         instance.to + op.to + i * op.to_stride, op.size)) {
-      return false;
-    }
+  const bool converts = op.kind == DiffKind::kConvert;
+  const uint32_t old_size = converts ? old_.layouts[op.old_type].size : op.size;
+  const uint32_t last = op.count - 1;
+  // Zeros everywhere: one value says it for all.
+  const bool alike =
+      !old_data_.has_run(instance.from + op.from, last * op.from_stride + old_size) &&
+      !new_data_.has_run(instance.to + op.to, last * op.to_stride + op.size);
+  for (uint32_t i = 0; i < (alike ? 1 : op.count); ++i) {
+    const uint32_t from = instance.from + op.from + i * op.from_stride;
+    const uint32_t to = instance.to + op.to + i * op.to_stride;
+    const bool equal =
+        converts ? initial_converts(op, from, to) : old_data_.equal(from, new_data_, to, op.size);
+    if (!equal) return false;
   }
   return true;
+}
+
+// Does a conversion make the new initial value of the old one?
+bool Planner::initial_converts(const DiffOp& op, uint32_t from, uint32_t to) const {
+  base::Bytes before(old_.layouts[op.old_type].size);
+  base::Bytes made(op.size);
+  base::Bytes after(op.size);
+  old_data_.read(from, before);
+  new_data_.read(to, after);
+  const Converted value = convert_stored(old_, op.old_type, before.data(), new_, op.new_type, made);
+  return value.initialise || made == after;
 }
 
 void Planner::apply_same(const Carried& instance, const DiffOp& op) {
@@ -176,7 +196,7 @@ void Planner::copy(const Carried& instance, const DiffOp& op, uint32_t fate) {
 
 void Planner::convert(const Carried& instance, const DiffOp& op) {
   plan_.counts.converted += op.leaves;
-  UpdateStep step = step_for(op, instance.to, row_of(instance, op.row, op.leaves));
+  UpdateStep step = step_for(op, instance.to, converted_row(instance, op));
   step.how = converted_by(op, instance.from);
   put(std::move(step));
 }

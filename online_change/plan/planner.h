@@ -55,6 +55,7 @@ class Planner {
   template <class MakeRow>
   uint32_t share(const std::string& key, uint64_t leaves, MakeRow make);
   uint32_t row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves);
+  uint32_t converted_row(const Carried& instance, const DiffOp& op);
   uint32_t constant_row(const Carried& instance, const DiffOp& op);
   void name_old_place(const Carried& instance, FateRow& row) const;
   void rename_row(const Carried& instance, bool whole);
@@ -68,6 +69,7 @@ class Planner {
   void find_live();
 
   bool initial_equal(const Carried& instance, const DiffOp& op) const;
+  bool initial_converts(const DiffOp& op, uint32_t from, uint32_t to) const;
   void put(UpdateStep step);
   void put_initial(UpdateStep step, base::Bytes bytes);  // says whether it may come early
   void finish_area();

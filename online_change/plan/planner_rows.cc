@@ -8,6 +8,9 @@
 namespace online_change {
 namespace {
 
+// Told beside what else becomes of a variable: the new one will show after a cold start only.
+constexpr const char* kInitialChanged = "initial value changed, the live value stays";
+
 std::string base_name(const std::string& name) { return name.substr(0, name.find('[')); }
 
 std::string join_path(const std::string& instance, const std::string& relative) {
@@ -52,6 +55,17 @@ uint32_t Planner::row_of(const Carried& instance, uint32_t diff_row, uint64_t le
   });
 }
 
+uint32_t Planner::converted_row(const Carried& instance, const DiffOp& op) {
+  if (initial_equal(instance, op)) return row_of(instance, op.row, op.leaves);
+  return share("v" + instance.key + ":" + std::to_string(op.row), op.leaves, [&] {
+    FateRow row = instance.diff->rows[op.row];
+    row.path = join_path(new_.instance_path(instance.new_id), row.path);
+    name_old_place(instance, row);
+    row.reason += std::string("; ") + kInitialChanged;
+    return row;
+  });
+}
+
 // Names the old place of what was moved, from the path in its area.
 void Planner::name_old_place(const Carried& instance, FateRow& row) const {
   if (row.old_path.empty()) return;
@@ -89,8 +103,7 @@ void Planner::rename_row(const Carried& instance, bool whole) {
   });
 }
 
-// The live value stays; the new initial value will show after a cold start only. Or the name is
-// another one.
+// Another initial value, or another name.
 uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
   const std::string renamed = rename_note(instance, op);
   const bool stays = !initial_equal(instance, op);
@@ -102,17 +115,18 @@ uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
     name_old_place(instance, row);
     row.reason = renamed;
     if (stays && !renamed.empty()) row.reason += "; ";
-    if (stays) row.reason += "initial value changed, the live value stays";
+    if (stays) row.reason += kInitialChanged;
     return row;
   });
 }
 
-// An instance whose area moved has one row for all that moved with it.
+// An instance whose area moved has one row for all that moved with it and is else as it was.
 uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
   const std::string renamed = rename_note(instance, op);
-  const bool alone = !instance.moved() || !renamed.empty();
+  const bool changed = !initial_equal(instance, op);
+  const bool alone = !instance.moved() || !renamed.empty() || changed;
   std::string part = alone ? std::to_string(op.row) : "";
-  return share("m" + instance.key + ":" + part, op.leaves, [&] {
+  return share((changed ? "M" : "m") + instance.key + ":" + part, op.leaves, [&] {
     FateRow row;
     row.fate = Fate::kMoved;
     row.path = new_.instance_path(instance.new_id);
@@ -125,6 +139,7 @@ uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
       row.new_type = member.new_type;
       row.reason = renamed.empty() ? "" : renamed + ", ";
       row.reason += instance.moved() ? "area moved" : "moved inside its area";
+      if (changed) row.reason += std::string("; ") + kInitialChanged;
       return row;
     }
     row.old_type = old_.types.text(old_.instances[instance.old_id].type);
