@@ -283,8 +283,8 @@ base::Result<SwitchReport> Change::switch_steps(bool again) {
   if (pending_->migrate_back) pending_->migrate_back->note(data.data());
   vm::Memory* const area = pending_->area ? &pending_->area->data() : nullptr;
   pending_->waiting = controller_.publish(std::move(pending_->waiting), area);
-  report.forces = controller_.take_moved_forces();
-  pending_->ended_forces = report.forces.ended;
+  moved_forces_ = controller_.take_moved_forces();
+  pending_->ended_forces = moved_forces_.ended;
   state_ = State::kTrial;
   if (base::Status entered = enter(); !entered.ok()) return entered.error();
   report.pause_ns = monotonic_ns() - begin_ns;
@@ -353,7 +353,7 @@ base::Result<SwitchReport> Change::undo_steps(Exits exits, bool whatever_happens
   }
   pending_->charts.settle(memory);
   retired_ = controller_.publish(std::move(pending_->waiting));
-  report.forces = controller_.take_moved_forces();
+  moved_forces_ = controller_.take_moved_forces();
   if (does_anything(pending_->package.inverse)) controller_.construct();
   report.pause_ns = monotonic_ns() - begin_ns;
   report.counts = pending_->package.inverse.counts;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -46,7 +47,6 @@ struct SwitchReport {
   uint64_t missed = 0;        // releases, because of it; counted by who runs the next cycles
   FateCounts counts;          // what was done
   int64_t ago_ns = 0;         // that it was, when a controller said so
-  vm::MovedForces forces;
 };
 
 // What an undo does with FB_Exit of what goes with it.
@@ -101,6 +101,8 @@ class Change {
   const ir::VerifiedImage* next() const;
   // What becomes of the forces by the switch; in trial, by undo.
   const vm::ForcedSet& next_forces() const;
+  // After a switch or an undo, once: what it did to forces.
+  vm::MovedForces take_moved_forces() { return std::exchange(moved_forces_, {}); }
   // Only code differs: no value is touched, there and back.
   bool keeps_all() const;
   // What live_losses() reads of data memory.
@@ -230,6 +232,7 @@ class Change {
   // A generation that was published or prepared and is no longer used; it lives until the next
   // prepare(), because the controller's tables may still refer to it.
   std::unique_ptr<vm::Generation> retired_;
+  vm::MovedForces moved_forces_;
   std::unique_ptr<Standby> retired_area_;
   std::unique_ptr<Pending> retired_pending_;  // freed by collect(), not at a boundary
   std::function<bool()> interrupted_;

@@ -112,7 +112,7 @@ expect 0 stvm get --dir plc --forces
 said '^level=44  everywhere$'
 expect 0 stvm events --dir plc
 said " warning forced by $who: again, as before the edit that was undone: level=44\$"
-[ "$(grep -c 'again.*: level=44' out)" -eq 1 ] || fail "a force comes back twice"
+[ "$(grep -c 'again.*: level=44$' out)" -eq 1 ] || fail "a force comes back twice"
 [ "$(grep -c 'without a place' out)" -eq 3 ] || fail "a force ends twice"
 expect 0 stvm stop --dir plc
 expect 0 stvm journal --dir plc

@@ -70,7 +70,9 @@ void ControllerService::note_accepted(size_t edits, const base::Digest& next,
   if (edits > 1) done.text += " to " + trials_[edits - 1].edit.name;
   if (edits == trials_.size() && !watched.empty()) done.text += ", " + watched;
   store_.note(std::move(done));
-  trials_.erase(trials_.begin(), trials_.begin() + static_cast<std::ptrdiff_t>(edits));
+  std::vector<Trial> rest;
+  for (size_t i = edits; i < trials_.size(); ++i) rest.push_back(std::move(trials_[i]));
+  trials_ = std::move(rest);
   ++edition_;
   changed_by_ = who_;
 }

@@ -14,28 +14,6 @@ namespace stvm {
 using online_change::Event;
 using online_change::JournalEntry;
 
-namespace {
-
-std::span<const vm::Force> rows_of(const vm::ForceList& list) {
-  return list ? std::span<const vm::Force>(*list) : std::span<const vm::Force>();
-}
-
-// What another force keeps out has not come back.
-std::vector<std::string> forced_again(const vm::Controller& controller,
-                                      std::span<const vm::Force> back) {
-  std::vector<std::string> rows;
-  for (const vm::Force& force : back) {
-    const auto is_it = [&](const vm::Force& now) {
-      return now.path == force.path && now.value == force.value;
-    };
-    if (std::ranges::none_of(controller.forces(), is_it)) continue;
-    rows.push_back(force.path + "=" + vm::value_text(controller.image(), force));
-  }
-  return rows;
-}
-
-}  // namespace
-
 int64_t wall_time_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -93,15 +71,22 @@ void ControllerService::note_switch(Event event, const base::Digest& from,
   done.measured_ns = report.pause_ns;
   done.cycle = report.cycle_after;
   store_.note(std::move(done));
-  std::vector<std::string> ended;
-  for (const vm::Force& force : rows_of(report.forces.ended)) ended.push_back(force.path);
-  if (!ended.empty()) {
+  const vm::MovedForces forces = change_.take_moved_forces();
+  if (forces.ended) {
     note_done(Event::kUnforced, who_,
-              "without a place in the program that runs now: " + list_text(ended));
+              "without a place in the program that runs now: " + list_text(*forces.ended));
   }
-  const std::vector<std::string> back = forced_again(controller_, rows_of(report.forces.back));
-  if (back.empty()) return;
-  note_done(Event::kForced, who_, "again, as before the edit that was undone: " + list_text(back));
+  if (!forces.back) return;
+  std::vector<std::string> again;  // what another force keeps out has not come back
+  for (const vm::Force& force : controller_.forces()) {
+    const auto is_it = [&](const vm::Force& one) {
+      return one.path == force.path && one.value == force.value;
+    };
+    if (std::ranges::none_of(*forces.back, is_it)) continue;
+    again.push_back(force.path + "=" + vm::value_text(controller_.image(), force));
+  }
+  if (again.empty()) return;
+  note_done(Event::kForced, who_, "again, as before the edit that was undone: " + list_text(again));
 }
 
 // A snapshot with room for the running program or the staged one.

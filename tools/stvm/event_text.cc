@@ -100,6 +100,12 @@ std::string list_text(const std::vector<std::string>& rows) {
   return out;
 }
 
+std::string list_text(const std::vector<vm::Force>& forces) {
+  std::vector<std::string> paths;
+  for (const vm::Force& force : forces) paths.push_back(force.path);
+  return list_text(paths);
+}
+
 std::string age_text(int64_t ns) {
   constexpr struct {
     int64_t seconds;

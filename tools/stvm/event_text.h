@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "online_change/store/journal.h"
+#include "vm/runtime/forces.h"
 
 namespace stvm {
 
@@ -24,6 +25,8 @@ std::string what_text(const online_change::JournalEntry& entry);
 std::string more_text(uint64_t count, int64_t span_ns);
 // "a, b, and 12 more": as many as an event has room for.
 std::string list_text(const std::vector<std::string>& rows);
+// Their paths.
+std::string list_text(const std::vector<vm::Force>& forces);
 // "90 s", "12 min", "3 h", "2 d"
 std::string age_text(int64_t ns);
 

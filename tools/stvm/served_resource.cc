@@ -194,18 +194,13 @@ base::Status ServedResource::end() {
     if (!saved.ok()) note(Event::kAlarm, "not saved at the end: " + base::to_string(saved.error()));
   }
   service_->keep_trial_over_stop();
+  if (!controller().forces().empty()) {
+    note(Event::kUnforced, "with the end of the controller: " + list_text(controller().forces()));
+  }
   online_change::JournalEntry entry;
   entry.time_ns = wall_time_ns();
   entry.event = Event::kStopped;
   entry.who = service_->stop_wanted() ? service_->stopped_by() : kWho;
-  std::vector<std::string> forced;
-  for (const vm::Force& force : controller().forces()) forced.push_back(force.path);
-  if (!forced.empty()) {
-    online_change::JournalEntry ended = entry;
-    ended.event = Event::kUnforced;
-    ended.text = "with the end of the controller: " + list_text(forced);
-    store_.note(std::move(ended));
-  }
   entry.from = controller().verified().digest();
   events_->look();
   store_.note(std::move(entry));

@@ -99,20 +99,21 @@ ForcedSet ForcedSet::adopt(const ir::VerifiedImage& image, const CodeTable& own,
   };
   for (const Force& row : rows) {
     Force force = row;
+    Force before = row;
     force.path = paths.find(row);
     base::Result<ir::Symbol> symbol = ir::find_symbol(image.names(), force.path);
     base::Bytes value;
     if (symbol.ok() && !symbol->constant) value = carry_over(from, force, to, *symbol);
     force = {force.path, symbol.ok() ? *symbol : ir::Symbol(), std::move(value)};
     if (force.value.empty() || !is_free(force)) {
-      ended.push_back(row);
+      ended.push_back(std::move(before));
     } else {
       forces.push_back(std::move(force));
     }
   }
   if (back != nullptr) {
-    for (const Force& force : *back) {
-      if (is_free(force)) forces.push_back(force);
+    for (Force force : *back) {
+      if (is_free(force)) forces.push_back(std::move(force));
     }
   }
   ForcedSet set = make(image, own, std::move(forces), tier);
