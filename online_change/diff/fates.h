@@ -37,6 +37,10 @@ inline bool stands_for_several(const FateRow& row) {
   return std::string_view(row.reason).ends_with(kMoreLikeIt);
 }
 
+// How the reason of a row of something renamed begins; a rule moves parts under this word, too.
+inline constexpr std::string_view kRenamed = "renamed from `";
+inline bool is_renamed(const FateRow& row) { return row.reason.starts_with(kRenamed); }
+
 struct FateCounts {
   uint64_t kept = 0, moved = 0, converted = 0, initialised = 0, dropped = 0;
   uint64_t total() const { return kept + moved + converted + initialised + dropped; }

@@ -17,9 +17,10 @@ struct Candidates {  // of one type
   std::vector<const Member*> came;
 };
 
-// Has it a name that a source can write?
+// Has it a name that a source can write, and a value that a rename would keep?
 bool is_written(const Member& member) {
-  return ir::is_listed(member) && member.name.find_first_of("#-") == std::string::npos;
+  return ir::is_listed(member) && !member.constant &&
+         member.name.find_first_of("#-") == std::string::npos;
 }
 
 // Written variables of `type` that `other` does not have.
@@ -64,6 +65,11 @@ std::string plain(std::string name) {
 }
 
 }  // namespace
+
+std::string rename_proposal(const std::string& old_name) {
+  return "; if it is `" + old_name.substr(old_name[0] == '.') +
+         "` renamed, write {renamed from := '" + old_name + "'} before it";
+}
 
 std::string migration_hint(const ir::Type& before, const ir::Type& after) {
   return "; {migration of := '" + after.name + "', from := '" + before.name + "'} FUNCTION " +
@@ -122,9 +128,7 @@ void TypeDiffer::propose_renames(TypeDiff& diff, ir::TypeId old_type, ir::TypeId
     if (group.gone.size() != group.came.size()) continue;
     for (size_t i = 0; i < group.gone.size(); ++i) {
       const std::string old_name = seen_from(group.gone[i]->name, group.came[i]->name);
-      diff.hints[ir::fold_name(group.came[i]->name)] =
-          "; if it is `" + old_name.substr(old_name[0] == '.') +
-          "` renamed, write {renamed from := '" + old_name + "'} before it";
+      diff.hints[ir::fold_name(group.came[i]->name)] = rename_proposal(old_name);
     }
   }
   for (FateRow& row : diff.rows) {
@@ -167,8 +171,8 @@ void propose_reading(const ir::Image& image, std::vector<FateRow>& rows) {
     if (from.empty() == to.empty()) continue;
     const bool list = old_path.find('.') != std::string::npos;
     row.reason = "new; a {migration of := '" + (to.empty() ? "VAR_GLOBAL" : to) +
-                  "'} with an input {old := '" + (list ? "" : ".") + old_path +
-                  "'} can take over the one that goes";
+                 "'} with an input {old := '" + (list ? "" : ".") + old_path +
+                 "'} can take over the one that goes";
   }
 }
 

@@ -139,6 +139,8 @@ class TypeDiffer {
   bool failed_ = false;
 };
 
+// "; if it is `x` renamed, write ...": of what comes where `x` goes.
+std::string rename_proposal(const std::string& old_name);
 // "; {migration of := 'B', from := 'A'} FUNCTION A_to_B ...": what keeps values where another type
 // takes the place, for the reason of a row.
 std::string migration_hint(const ir::Type& before, const ir::Type& after);

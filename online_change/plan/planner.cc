@@ -196,7 +196,8 @@ void Planner::copy(const Carried& instance, const DiffOp& op, uint32_t fate) {
 
 void Planner::convert(const Carried& instance, const DiffOp& op) {
   plan_.counts.converted += op.leaves;
-  UpdateStep step = step_for(op, instance.to, converted_row(instance, op));
+  UpdateStep step =
+      step_for(op, instance.to, row_of(instance, op.row, op.leaves, !initial_equal(instance, op)));
   step.how = converted_by(op, instance.from);
   put(std::move(step));
 }

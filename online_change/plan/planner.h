@@ -54,14 +54,17 @@ class Planner {
   // planner_rows.cc: row numbers in fates_. What several instances share is one row.
   template <class MakeRow>
   uint32_t share(const std::string& key, uint64_t leaves, MakeRow make);
-  uint32_t row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves);
-  uint32_t converted_row(const Carried& instance, const DiffOp& op);
+  uint32_t repeated(const std::string& key, uint64_t leaves);  // kNoRow: there is none yet
+  uint32_t first_of(const std::string& key, uint64_t leaves, FateRow row);
+  uint32_t row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves,
+                  bool other_initial = false);
   uint32_t constant_row(const Carried& instance, const DiffOp& op);
   void name_old_place(const Carried& instance, FateRow& row) const;
   void rename_row(const Carried& instance, bool whole);
   std::string rename_note(const Carried& instance, const DiffOp& op) const;
   uint32_t note_row(const Carried& instance, const DiffOp& op);
   std::string rename_hint(uint32_t new_id);
+  std::string program_hint(ir::TypeId type) const;
   std::string type_rename_hint(ir::TypeId before, ir::TypeId after) const;
   uint32_t moved_row(const Carried& instance, const DiffOp& op);
   uint32_t added_row(uint32_t new_id, uint64_t leaves);

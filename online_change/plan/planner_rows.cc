@@ -9,7 +9,7 @@ namespace online_change {
 namespace {
 
 // Told beside what else becomes of a variable: the new one will show after a cold start only.
-constexpr const char* kInitialChanged = "initial value changed, the live value stays";
+constexpr const char* kInitialChanged = "; initial value changed, the live value stays";
 
 std::string base_name(const std::string& name) { return name.substr(0, name.find('[')); }
 
@@ -30,13 +30,14 @@ bool has_type(const ir::Image& image, const ir::Type& like) {
 
 template <class MakeRow>
 uint32_t Planner::share(const std::string& key, uint64_t leaves, MakeRow make) {
-  uint32_t number = fates_.find(key);
-  if (number == FateRows::kNoRow) {
-    FateRow row = make();
-    row.count = leaves;
-    number = fates_.add(key, row);
-    used_here_.insert(number);
-  } else if (used_here_.insert(number).second) {
+  const uint32_t number = repeated(key, leaves);
+  return number == FateRows::kNoRow ? first_of(key, leaves, make()) : number;
+}
+
+uint32_t Planner::repeated(const std::string& key, uint64_t leaves) {
+  const uint32_t number = fates_.find(key);
+  if (number == FateRows::kNoRow) return number;
+  if (used_here_.insert(number).second) {
     fates_.repeat(number, leaves);
   } else {
     fates_.add_count(number, leaves);
@@ -44,24 +45,23 @@ uint32_t Planner::share(const std::string& key, uint64_t leaves, MakeRow make) {
   return number;
 }
 
-uint32_t Planner::row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves) {
-  return share("r" + instance.key + ":" + std::to_string(diff_row), leaves, [&] {
+uint32_t Planner::first_of(const std::string& key, uint64_t leaves, FateRow row) {
+  row.count = leaves;
+  const uint32_t number = fates_.add(key, row);
+  used_here_.insert(number);
+  return number;
+}
+
+uint32_t Planner::row_of(const Carried& instance, uint32_t diff_row, uint64_t leaves,
+                         bool other_initial) {
+  const char* const kind = other_initial ? "v" : "r";
+  return share(kind + instance.key + ":" + std::to_string(diff_row), leaves, [&] {
     FateRow row = instance.diff->rows[diff_row];
     row.path = join_path(row.fate == Fate::kDropped ? old_.instance_path(instance.old_id)
                                                     : new_.instance_path(instance.new_id),
                          row.path);
     name_old_place(instance, row);
-    return row;
-  });
-}
-
-uint32_t Planner::converted_row(const Carried& instance, const DiffOp& op) {
-  if (initial_equal(instance, op)) return row_of(instance, op.row, op.leaves);
-  return share("v" + instance.key + ":" + std::to_string(op.row), op.leaves, [&] {
-    FateRow row = instance.diff->rows[op.row];
-    row.path = join_path(new_.instance_path(instance.new_id), row.path);
-    name_old_place(instance, row);
-    row.reason += std::string("; ") + kInitialChanged;
+    if (other_initial) row.reason += kInitialChanged;
     return row;
   });
 }
@@ -114,8 +114,7 @@ uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
     row.path = join_path(new_.instance_path(instance.new_id), row.path);
     name_old_place(instance, row);
     row.reason = renamed;
-    if (stays && !renamed.empty()) row.reason += "; ";
-    if (stays) row.reason += kInitialChanged;
+    if (stays) row.reason += kInitialChanged + (renamed.empty() ? 2 : 0);
     return row;
   });
 }
@@ -139,7 +138,7 @@ uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
       row.new_type = member.new_type;
       row.reason = renamed.empty() ? "" : renamed + ", ";
       row.reason += instance.moved() ? "area moved" : "moved inside its area";
-      if (changed) row.reason += std::string("; ") + kInitialChanged;
+      if (changed) row.reason += kInitialChanged;
       return row;
     }
     row.old_type = old_.types.text(old_.instances[instance.old_id].type);
@@ -154,11 +153,30 @@ uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
 std::string Planner::rename_hint(uint32_t new_id) {
   const ir::Instance& instance = new_.instances[new_id];
   const uint32_t twin = match_.old_of_new[instance.parent];
-  if (twin == kNoInstance || new_.types[instance.type].kind == ir::Kind::kProgram) return {};
+  if (twin == kNoInstance) return {};
+  if (new_.types[instance.type].kind == ir::Kind::kProgram) return program_hint(instance.type);
   const TypeDiff& diff =
       differ_.area(old_.instances[twin].type, new_.instances[instance.parent].type);
   const auto hint = diff.hints.find(ir::fold_name(base_name(instance.name)));
   return hint == diff.hints.end() ? std::string() : hint->second;
+}
+
+// One program of a type goes, and one comes.
+std::string Planner::program_hint(ir::TypeId type) const {
+  uint32_t came = 0;
+  for (const uint32_t id : new_.program_ids()) {
+    came += new_.instances[id].type == type && match_.old_of_new[id] == kNoInstance ? 1 : 0;
+  }
+  uint32_t gone = 0;
+  std::string name;
+  for (const uint32_t id : old_.program_ids()) {
+    const ir::Instance& row = old_.instances[id];
+    if (match_.new_of_old[id] != kNoInstance) continue;
+    if (!same_instance_type(old_, row.type, new_, type)) continue;
+    ++gone;
+    name = row.name;
+  }
+  return gone == 1 && came == 1 ? rename_proposal(name) : std::string();
 }
 
 // A type that is gone may be the new one under another name: that has what it had.

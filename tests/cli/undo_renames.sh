@@ -20,6 +20,8 @@ serve plc v1.st
 expect 0 stvm change v2.st --dir plc --yes --allow-overrun --allow-loss
 said '^kept +valve : BOOL  TRUE  .renamed from `lamp`.$'
 said '^kept +Main.first : Pump  .renamed from `p1`.$'
+expect 0 stvm edits --dir plc
+said '^  variables +valve .renamed from `lamp`.,'
 expect 0 stvm undo --dir plc --dry-run
 said '^kept +lamp : BOOL  TRUE  .renamed from `valve`.$'
 said '^kept +horn : BOOL  TRUE  .renamed from `bell`.$'

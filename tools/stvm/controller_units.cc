@@ -74,7 +74,8 @@ TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
   FirstRows first;
   for (const online_change::FateRow& row : plan.fates) {
     // Who only moves is as it was.
-    if (row.fate == Fate::kMoved || (row.fate == Fate::kKept && row.old_path.empty())) continue;
+    const bool same = row.fate == Fate::kMoved || row.fate == Fate::kKept;
+    if (same && !online_change::is_renamed(row)) continue;
     ++edit.variable_count;
     if (first.take(row)) edit.variables.push_back(row);
   }
@@ -82,8 +83,7 @@ TrialEdit ControllerService::describe(const ir::VerifiedImage& running,
 }
 
 base::Result<base::Bytes> ControllerService::units(const vm::Request& request) {
-  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr,
-                            previous()));
+  return encode(units_.page(request.offset, staged_ ? &*staged_ : nullptr, previous()));
 }
 
 base::Result<base::Bytes> ControllerService::edits(const vm::Request& request) {
@@ -92,7 +92,7 @@ base::Result<base::Bytes> ControllerService::edits(const vm::Request& request) {
   if (request.offset >= count) return encode(page);
   const uint64_t at = request.offset;
   const bool undone = at >= trials_.size();
-  page.edits = {undone ? undone_[count - 1 - at].edit : trials_[at].edit};
+  page.edits.push_back(undone ? undone_[count - 1 - at].edit : trials_[at].edit);
   page.edits.front().undone = undone;
   page.next = at + 1 < count ? at + 1 : 0;
   return encode(page);
@@ -130,14 +130,17 @@ base::Result<base::Bytes> ControllerService::facts(const vm::Request&) {
 // does.
 base::Result<base::Bytes> ControllerService::redo(const vm::Request& request) {
   if (undone_.empty()) {
-    return base::Error{base::Refusal::kNothingToUndo, "no edit was undone that could be brought "
-                                                      "again"};
+    return base::Error{base::Refusal::kNothingToUndo,
+                       "no edit was undone that could be brought "
+                       "again"};
   }
   const Trial& next = undone_.back();
   if (!request.names.empty() && request.names.front() != next.edit.name) {
-    return base::Error{base::Refusal::kNothingToUndo,
-                       "`" + request.names.front() + "` is not the edit that was undone last, "
-                       "which is " + next.edit.name + "; `stvm edits` shows them"};
+    return base::Error{base::Refusal::kNothingToUndo, "`" + request.names.front() +
+                                                          "` is not the edit that was undone last, "
+                                                          "which is " +
+                                                          next.edit.name +
+                                                          "; `stvm edits` shows them"};
   }
   if (next.edit.from != controller_.verified().digest()) {
     return base::Error{base::Refusal::kStaleBase,

@@ -73,7 +73,10 @@ void print_text(const TrialEdit& edit) {
   types.print();
   Line variables("variables");
   for (const online_change::FateRow& row : edit.variables) {
-    variables.add(row.path + " (" + online_change::fate_name(row.fate) + ")");
+    const std::string what = online_change::is_renamed(row)
+                                 ? row.reason.substr(0, row.reason.find_first_of(",;"))
+                                 : online_change::fate_name(row.fate);
+    variables.add(row.path + " (" + what + ")");
   }
   variables.rest(edit.variable_count, edit.variables.size());
   variables.print();
