@@ -157,9 +157,8 @@ double string_to_f64(String from) {
     size = based ? static_cast<double>(leading_number(text)) : leading_real(text);
   } else {  // the words of *_TO_STRING, or no number
     const std::string_view word = trimmed(text);
-    if (word.size() != 3 || !starts_with_folded(word, "INF")) {
-      const bool nan = word.size() == 3 && starts_with_folded(word, "NAN");
-      return nan ? std::numeric_limits<double>::quiet_NaN() : 0;
+    if (word != "Inf") {
+      return word == "NaN" ? std::numeric_limits<double>::quiet_NaN() : 0;
     }
     size = std::numeric_limits<double>::infinity();
   }

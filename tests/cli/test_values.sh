@@ -24,6 +24,9 @@ TEST 'array' VAR a, b : ARRAY[1..2] OF INT; END_VAR a[2] := 7; ASSERT_EQ(a, b); 
 TEST 'no difference' VAR a, b : Outer; END_VAR ASSERT_NEQ(a, b, 'same'); END_TEST
 TEST 'equal' VAR a, b : Outer; END_VAR ASSERT_EQ(a, b); a.list[3].n := 1; ASSERT_NEQ(a, b); END_TEST
 ST
+cat >>v_test.st <<'ST'
+TEST 'long' VAR s : STRING(600); END_VAR WHILE LEN(s) < 500 DO s := CONCAT(s, 'abcdefgh'); END_WHILE ASSERT_EQ(s, 'x'); END_TEST
+ST
 expect 1 stc test v_test.st
 for text in "expected 'ab', got 'ab '" "text: expected anything but 'a\\\$L\"b\"', got 'a\\\$L\"b\"'" \
   "expected '\\\$0F, got y', got '\\\$0E\\\$\\\$x\\\$0F'" 'expected "ab", got "ab\$L"' \
@@ -31,10 +34,10 @@ for text in "expected 'ab', got 'ab '" "text: expected anything but 'a\\\$L\"b\"
   'expected less than 16#07, got 16#08' 'expected 16#0000000000000000, got 16#FEDCBA9876543210' \
   'expected T#5s, got T#1m5s' "expected '\\\$L', got 'q'" 'all: expected Run, got Stop in \.m$' \
   "expected '', got 'x ' in \\.list\\[2\\]\\.t\$" 'expected 16#00, got 16#0A in \[1, 5\]$' \
-  'expected 0, got 7 in \[2\]$' 'same: expected a difference, got none' '^PASS   equal'; do
+  'expected 0, got 7 in \[2\]$' "expected 'x', got '(abcdefgh)+[a-h]*'\.\.\.\$" 'same: expected a difference, got none' '^PASS   equal'; do
   said "$text"
 done
-said '1 passed, 16 failed'
+said '1 passed, 17 failed'
 expect 1 stc test v_test.st --format junit --filter lines
 said "message=\"text: expected anything but 'a\\\$L&quot;b&quot;', got"
 

@@ -54,6 +54,7 @@ std::string with_literals(std::string_view message) {
     size_t end = message.find(between);
     if (end == std::string_view::npos) end = message.rfind(kTestValueEnd);
     out += literal(sort, message.substr(0, end));
+    if (end == std::string_view::npos) out += "...";  // the message has no room for all of it
     message.remove_prefix(end == std::string_view::npos ? message.size() : end + 1);
   }
   return out.append(message);
