@@ -95,10 +95,12 @@ expect 0 stvm edits --dir plc
 first=$(sed -n 's/^\(E[0-9]*\) .*/\1/p' out | head -1)
 expect 7 stvm undo "$first" --only --dir plc --yes --allow-loss --allow-overrun
 said "R0320: later edits depend on $first: unit .A. is another one here"
+said 'an edit that .undo --only. cannot take back goes with the later ones'
 expect 0 stvm undo --dir plc --yes
 change x2.st
 expect 7 stvm undo "$first" --only --dir plc --yes --allow-loss --allow-overrun
 said "R0321: later edits depend on $first: .B. uses .added., which is not there"
+said 'an edit that .undo --only. cannot take back goes with the later ones'
 expect 0 stvm edits --dir plc
 said "^$first "
 

@@ -89,8 +89,7 @@ base::Result<Outcome> take_out(const SwitchOptions& how, ControllerClient& clien
     const bool depends =
         why.refusal == base::Refusal::kOtherPart || why.refusal == base::Refusal::kCannotRelink;
     if (!depends) return why;
-    return base::Error{why.refusal, "later edits depend on " + edit + ": " + why.text +
-                                        "; without --only they go, too"};
+    return base::Error{why.refusal, "later edits depend on " + edit + ": " + why.text};
   }
   SwitchOptions noted = how;
   noted.note = take_out_note(edit);
