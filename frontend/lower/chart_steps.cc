@@ -20,8 +20,8 @@ uint32_t group_size(size_t count) {
 
 }  // namespace
 
-// A clock that has begun anew, after a restart with retained steps or where the chart got a clock of
-// its own, stands still once.
+// A clock that has begun anew stands still once: after a restart with retained steps, or where the
+// chart got a clock of its own.
 void ChartBody::read_clock() {
   ir::Place clock = member_variable_place(resolve(clock_));
   clock.type = elementary(ir::Kind::kTime);
