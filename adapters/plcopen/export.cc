@@ -244,6 +244,15 @@ void report_unsaid(const ExportInput& input, const std::string& owner,
 
 }  // namespace
 
+// XML reads a carriage return as the end of a line, where a line comment would end. To sources it
+// is a blank like others.
+static std::string without_lone_returns(std::string text) {
+  for (size_t at = text.find('\r'); at != std::string::npos; at = text.find('\r', at + 1)) {
+    if (at + 1 == text.size() || text[at + 1] != '\n') text[at] = ' ';
+  }
+  return text;
+}
+
 std::optional<std::string> export_document(const ExportInput& input,
                                            base::Diagnostics& diagnostics) {
   pugi::xml_document document;
@@ -277,7 +286,7 @@ std::optional<std::string> export_document(const ExportInput& input,
   std::ostringstream out;
   (input.form == Edition::kIec10 ? other : document)
       .save(out, "  ", pugi::format_default, pugi::encoding_utf8);
-  return xml::as_utf8(out.str());
+  return without_lone_returns(xml::as_utf8(out.str()));
 }
 
 }  // namespace plcopen

@@ -72,3 +72,9 @@ grep -q 'p.x + 10;' all.st && fail "what is left out went out"
 expect 0 stc export a.st -o whole.xml
 expect 0 stc import whole.xml -o whole
 grep -q '{ELSE}' whole/*.st || fail "the sources did not come back"
+
+# A carriage return within a line would be the end of one in XML, and of the comment.
+printf 'PROGRAM P\nVAR n : INT; END_VAR\n  // one\rline\n  n := n + 1;\nEND_PROGRAM\n' >cr.st
+expect 0 stc export cr.st -o cr.xml
+expect 0 stc import cr.xml -o cr
+expect 0 stc check cr/*.st

@@ -10,6 +10,7 @@
 #include "adapters/plcopen/plcopen.h"
 #include "base/check.h"
 #include "frontend/compile.h"
+#include "frontend/lex/literals.h"
 #include "tests/fuzz/imported.h"
 
 namespace {
@@ -53,21 +54,25 @@ void check_document(const std::string& text, bool compiles) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  if (text.find('\0') != std::string::npos) return 0;  // no source text, which the tool says
   base::SourceMap sources;
-  sources.add("fuzz.st", std::string(reinterpret_cast<const char*>(data), size));
+  sources.add("fuzz.st", text);
   base::Diagnostics diagnostics;
   frontend::Tree tree;
   frontend::parse_all(sources, {}, tree, diagnostics);
   const bool nothing = tree.pous.empty() && tree.types.empty() && tree.globals.empty();
   if (diagnostics.has_errors() || nothing) return 0;
-  const bool compiles = frontend::compile(sources, {}, diagnostics).has_value();
+  // Names and texts in Latin-1 are others in UTF-8.
+  const bool compiles = !frontend::is_latin1(text) &&
+                        frontend::compile_resources(sources, {}, diagnostics).has_value();
   for (const Edition form : {Edition::kTc6v200, Edition::kTc6v201, Edition::kIec10}) {
     for (const bool with_sources : {true, false}) {
       base::Diagnostics found;
       const plcopen::ExportInput input{sources, tree, "fuzz", form, nullptr, with_sources};
-      const std::optional<std::string> text = plcopen::export_document(input, found);
-      base::check(text.has_value() != found.has_errors(), "a document, or an error");
-      if (text) check_document(*text, compiles);
+      const std::optional<std::string> document = plcopen::export_document(input, found);
+      base::check(document.has_value() != found.has_errors(), "a document, or an error");
+      if (document) check_document(*document, compiles);
     }
   }
   return 0;
