@@ -38,7 +38,7 @@ VAR m : Motor; n : INT; END_VAR
   m(); n := m.Run();
 END_PROGRAM
 S
-needs_xml stc check a.st
+needs_xml stc export a.st -o first.xml
 
 # rules FILE: what stands in it, on lines of their own.
 rules() {
