@@ -134,6 +134,7 @@ void Resident::run_body(uint32_t pou, uint32_t next_type, BodyRecord& record) {
   record.callees = info.callees;
   record.writes = info.writes;
   record.prototypes = prototypes_of(sema.program.pous[info.id.index]);
+  record.for_others = called_for_others(sema.program.pous[info.id.index]);
 }
 
 void Resident::lower_all_bodies() {
@@ -228,7 +229,8 @@ bool Resident::lower_anew(uint32_t pou, Undo& undo) {
   alike =
       alike && undo.complete && (now.end_constant == old.end_constant || may_move_constants(pou));
   if (!alike) now.end_constant = old.end_constant;
-  uses_changed_ = uses_changed_ || now.marks != old.marks || now.callees != old.callees;
+  uses_changed_ = uses_changed_ || now.marks != old.marks || now.callees != old.callees ||
+                  now.for_others != old.for_others;
   now.before = old.before;
   now.behind = old.behind;
   now.in_turn = true;

@@ -1,6 +1,8 @@
 // Reads edits of statements and takes them over.
 #include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "frontend/parse/parse.h"
 #include "frontend/resident_parts.h"
@@ -176,10 +178,21 @@ bool Resident::lower_edited(const std::vector<Edit>& edits, Update& update, Undo
   return true;
 }
 
+// Depths of calls that no POU declares (sema/objects/recursion.cc): an edit may give others to POUs
+// that it does not touch, and these are not compiled here.
 bool Resident::check_uses_again() {
+  std::vector<uint32_t> depths;
+  for (const PouInfo& info : sema_->declared.pous) depths.push_back(info.usual_depth);
   diagnostics_ = base::Diagnostics();
   check_uses(*sema_);
-  if (diagnostics_.has_errors()) return false;
+  bool same = !diagnostics_.has_errors();
+  for (PouInfo& info : sema_->declared.pous) {
+    const uint32_t before = depths[info.number];
+    if (std::exchange(info.usual_depth, before) == before) continue;
+    sema_->program.pous[info.id.index].recursion_depth = before;
+    same = false;
+  }
+  if (!same) return false;
   behind_ = diagnostics_.all();
   return true;
 }

@@ -25,7 +25,8 @@ struct Resident::BodyRecord {
   uint32_t end_constant = 0;
   bool other_lines = false;  // BodyLog
   std::vector<uint32_t> marks;
-  std::vector<uint32_t> callees;  // as PouInfo's
+  std::vector<uint32_t> callees;      // as PouInfo's
+  std::vector<ir::PouId> for_others;  // called_for_others()
   std::vector<OutputWrite> writes;
   std::vector<ir::PouId> prototypes;  // of virtual calls
   Messages messages;

@@ -16,6 +16,16 @@ using Names = std::vector<std::string>;
 // Of one variable; more would not fit what a rule may say.
 constexpr size_t kMost = 64;
 
+// Each name goes on with each of the pieces; beyond the limit with the first alone. Takes no more
+// time where a text is long.
+void append_any(Names& names, const Names& pieces) {
+  const size_t count = names.size();
+  for (size_t k = 1; k < pieces.size() && (k + 1) * count <= kMost; ++k) {
+    for (size_t i = 0; i < count; ++i) names.push_back(names[i] + pieces[k]);
+  }
+  for (size_t i = 0; i < count; ++i) names[i] += pieces[0];
+}
+
 // Each of the first with each of the second.
 Names joined(const Names& fronts, const Names& ends) {
   Names out;
@@ -118,7 +128,7 @@ Names MadeNames::of_operand(std::string_view text) const {
     }
     after_dot = piece == ".";
     for (const std::string& old_name : before) pieces.push_back(gap + old_name);
-    out = joined(out, pieces);
+    append_any(out, pieces);
   }
   return out;
 }

@@ -21,6 +21,9 @@ inline constexpr std::string_view kCallAfterInit = "call_after_init";
 inline constexpr std::string_view kInitializeOnCall = "initialize_on_call";
 using base::DiagnosticCode;
 
+// Methods that the code calls for an instance that a handle leads to, and not for THIS; sorted.
+std::vector<ir::PouId> called_for_others(const ir::Pou& code);
+
 class Objects : public Phase {
  public:
   using Phase::Phase;
@@ -134,7 +137,7 @@ class Objects : public Phase {
   void report_circle(const std::vector<uint32_t>& path);
   uint32_t other_instance_in(const std::vector<uint32_t>& circle) const;
   void give_usual_depth(const std::vector<uint32_t>& pous);
-  std::vector<uint32_t> find_circle(std::vector<uint8_t>& marks) const;
+  std::vector<uint32_t> find_circle(std::vector<uint8_t>& marks, uint32_t& start) const;
   // start.cc
   void check_start_arguments();
   void check_start_arguments(SpecId spec, ir::TypeId type, std::vector<bool>& good);

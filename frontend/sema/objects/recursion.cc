@@ -25,22 +25,23 @@ struct Frame {
   size_t next = 0;
 };
 
-// Does the code call `callee`, or what may stand in its place, for an instance that a handle leads
-// to? THIS leads to its own.
-bool calls_another(const ir::Pou& code, const std::vector<bool>& may_run) {
+}  // namespace
+
+std::vector<ir::PouId> called_for_others(const ir::Pou& code) {
   std::unordered_set<uint32_t> own;
+  std::vector<ir::PouId> out;
   for (const ir::Block& block : code.blocks) {
     for (const ir::Inst& inst : block.insts) {
       if (inst.op == ir::Op::kThis) own.insert(inst.result.index);
       const bool call = inst.op == ir::Op::kCallVirtual || inst.op == ir::Op::kCallMethod;
       if (!call || inst.operands.empty() || own.contains(inst.operands[0].index)) continue;
-      if (may_run[inst.pou.index]) return true;
+      out.push_back(inst.pou);
     }
   }
-  return false;
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
-
-}  // namespace
 
 uint32_t Objects::recursion_depth(const PouDecl& decl) {
   const Attribute* attribute = sema_.tree.find_attribute(decl.attributes, kRecursionDepth);
@@ -74,15 +75,16 @@ uint32_t Objects::other_instance_in(const std::vector<uint32_t>& circle) const {
     const PouInfo& caller = sema_.declared.pous[circle[i]];
     const uint32_t next = circle[(i + 1) % circle.size()];
     if (!caller.id.valid()) continue;
-    std::vector<bool> may_run(sema_.program.pous.size(), false);
+    const std::vector<ir::PouId> for_others =
+        called_for_others(sema_.program.pous[caller.id.index]);
     for (const uint32_t callee : caller.callees) {
       const PouInfo& method = sema_.declared.pous[callee];
       const std::vector<uint32_t>& others = method.overrides;
       const bool meant =
           callee == next || std::find(others.begin(), others.end(), next) != others.end();
-      if (meant && method.id.valid()) may_run[method.id.index] = true;
+      if (meant && std::binary_search(for_others.begin(), for_others.end(), method.id))
+        return circle[i];
     }
-    if (calls_another(sema_.program.pous[caller.id.index], may_run)) return circle[i];
   }
   return kNoPou;
 }
@@ -98,9 +100,9 @@ void Objects::give_usual_depth(const std::vector<uint32_t>& pous) {
 }
 
 // Depth first through what declares no depth, with a stack of its own: chains may be long.
-std::vector<uint32_t> Objects::find_circle(std::vector<uint8_t>& marks) const {
+std::vector<uint32_t> Objects::find_circle(std::vector<uint8_t>& marks, uint32_t& start) const {
   enum Mark : uint8_t { kNew, kOpen, kDone };
-  for (uint32_t start = 0; start < sema_.declared.pous.size(); ++start) {
+  for (; start < sema_.declared.pous.size(); ++start) {
     if (marks[start] != kNew) continue;
     std::vector<Frame> stack{{start}};
     marks[start] = kOpen;
@@ -140,8 +142,9 @@ void Objects::check_recursion() {
       sema_.program.pous[info.id.index].recursion_depth = 0;
   }
   std::vector<uint8_t> marks(sema_.declared.pous.size(), 0);
+  uint32_t start = 0;
   for (;;) {
-    const std::vector<uint32_t> circle = find_circle(marks);
+    const std::vector<uint32_t> circle = find_circle(marks, start);
     if (circle.empty()) break;
     const uint32_t pou = other_instance_in(circle);
     if (pou == kNoPou) {
@@ -150,8 +153,9 @@ void Objects::check_recursion() {
       continue;
     }
     usual.push_back(pou);
-    give_usual_depth(usual);
+    sema_.program.pous[sema_.declared.pous[pou].id.index].recursion_depth = kUsualDepth;
   }
+  give_usual_depth(usual);
 }
 
 }  // namespace frontend

@@ -259,6 +259,47 @@ END_CONFIGURATION
   }
 }
 
+// Methods of other instances have the depth of calls that is usual, and an edit of one method may
+// give it to another one, or fewer calls to all.
+TEST(Edits, DepthsOfCallsAreThoseOfAWholeBuild) {
+  std::string text = R"(FUNCTION_BLOCK Pair
+VAR_INPUT p : POINTER TO Pair; k : INT; END_VAR
+METHOD Up : INT
+  Up := 1; IF p <> 0 THEN Up := Up + Down(); END_IF
+END_METHOD
+METHOD Down : INT
+  Down := 2; IF k > 3 THEN Down := Down + p^.Up(); END_IF
+END_METHOD
+METHOD Rest : INT
+  Rest := k;
+END_METHOD
+METHOD Alone : INT
+  Alone := 1; IF p <> 0 THEN Alone := Alone + p^.Rest(); END_IF
+END_METHOD
+)";
+  std::string calls;
+  for (int i = 1; i <= 4; ++i) {
+    const std::string name = "Sum" + std::to_string(i);
+    text += "METHOD " + name + " : INT " + name + " := 3; IF p <> 0 THEN " + name + " := p^." +
+            name + "(); END_IF END_METHOD\n";
+    calls += " n := a." + name + "();";
+  }
+  text +=
+      "END_FUNCTION_BLOCK\nPROGRAM Main VAR a : Pair; n : INT; END_VAR n := a.Up() + a.Alone();" +
+      calls + " END_PROGRAM\n";
+  Project project({text});
+  ASSERT_NE(project.outcome.messages.find("\"errors\":0"), std::string::npos)
+      << project.outcome.messages;
+  project.edit(0, "Up + Down()", "Up + p^.Down()");            // another one breaks the circle
+  project.edit(0, "Alone + p^.Rest()", "Alone + p^.Alone()");  // fewer calls for all
+  project.edit(0, "Down := 2", "Down := 4");
+  EXPECT_EQ(project.whole, 0u);
+  EXPECT_EQ(project.lowered, 1u);
+  project.edit(0, "Up + p^.Down()", "Up + Down()");
+  project.edit(0, "Down + p^.Up()", "Down + Up()");  // the own instance alone: an error
+  EXPECT_EQ(project.outcome.messages.find("\"errors\":0"), std::string::npos);
+}
+
 // Texts and nodes of former edits go when there are too many of them.
 TEST(Edits, TenThousandEditsKeepTheirMemory) {
   workspace::Settings settings;
