@@ -26,6 +26,7 @@ constexpr const char* kFiles[] = {"golden/change/migration.st",
                                   "golden/change/subrange_enum_string.st",
                                   "golden/change/union_structure.st",
                                   "golden/change/bools_become_clean.st",
+                                  "golden/change/migration_between_areas.st",
                                   "fuzz/every_table.st"};
 static_assert(std::size(kFiles) == kEveryTable + 1);
 
