@@ -43,7 +43,12 @@ struct Part {
   bool of_wires = false;
   std::vector<Link> wire;  // one, or none
   std::string function;
-  std::vector<std::pair<std::string, Part>> pins;
+  struct Pin;
+  std::vector<Pin> pins;
+};
+struct Part::Pin {
+  std::string name;
+  Part part;
 };
 
 class Expression {
@@ -135,8 +140,8 @@ Part Expression::binary(int above) {
       continue;
     }
     Part both = box(found->function, left.begin, right.end);
-    both.pins.emplace_back("", std::move(left));
-    both.pins.emplace_back("", std::move(right));
+    both.pins.push_back({"", std::move(left)});
+    both.pins.push_back({"", std::move(right)});
     left = std::move(both);
   }
   --depth_;
@@ -158,7 +163,7 @@ Part Expression::unary() {
   }
   if (op != TokenKind::kNot) return bad();
   Part out = box("NOT", begin, of.end);
-  out.pins.emplace_back("", std::move(of));
+  out.pins.push_back({"", std::move(of)});
   return out;
 }
 
@@ -205,7 +210,7 @@ Part Expression::call() {
       pin = text(at_, at_ + 1);
       at_ += 2;
     }
-    out.pins.emplace_back(std::move(pin), binary(0));
+    out.pins.push_back({std::move(pin), binary(0)});
   } while (accept(TokenKind::kComma));
   if (!accept(TokenKind::kRightParen)) return bad();
   out.end = at_;

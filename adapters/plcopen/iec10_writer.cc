@@ -137,6 +137,9 @@ void Iec10Writer::list(Node to, const char* name, Node from, uint32_t order) {
     variable(out.append_child("Variable"), each, order);
     if (order != 0) ++order;
   }
+  for (Node data : from.child("addData").children("data")) {
+    if (is_codesys(data)) problem(from, "attributes of lists of variables have no element");
+  }
   other_data(out, from);
 }
 

@@ -4,6 +4,7 @@
 
 #include "adapters/xml/document.h"
 #include "base/diagnostics_render.h"
+#include "base/windows_1252.h"
 
 namespace xml {
 namespace {
@@ -25,21 +26,12 @@ void append(std::string& out, uint32_t code) {
   byte(0x80 | (code & 0x3F));
 }
 
-// windows-1252 where it differs from ISO-8859-1; 0: no character.
-constexpr uint16_t kWindows[32] = {0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021,
-                                   0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0,      0x017D, 0,
-                                   0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
-                                   0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
-
 Decoded from_latin(std::string_view bytes, bool windows) {
   Decoded out;
   out.text.reserve(bytes.size());
   for (char c : bytes) {
-    uint32_t code = static_cast<uint8_t>(c);
-    if (windows && code >= 0x80 && code < 0xA0 && kWindows[code - 0x80] != 0) {
-      code = kWindows[code - 0x80];
-    }
-    append(out.text, code);
+    const auto byte = static_cast<uint8_t>(c);
+    append(out.text, windows ? base::of_windows_1252(byte) : byte);
   }
   return out;
 }
@@ -130,7 +122,7 @@ std::string as_utf8(std::string_view bytes) {
   for (size_t at = 0; at < bytes.size();) {
     const uint32_t length = base::character_bytes(bytes, at);
     if (length == 1) {
-      append(out, static_cast<uint8_t>(bytes[at]));
+      append(out, base::of_windows_1252(static_cast<uint8_t>(bytes[at])));
     } else {
       out += bytes.substr(at, length);
     }

@@ -29,7 +29,7 @@ struct Decoded {
   std::string error;  // empty: none
 };
 Decoded to_utf8(std::string_view bytes);
-// Bytes that are no UTF-8 are read as Latin-1, as the compiler reads sources.
+// Bytes that are no UTF-8 are read as windows-1252, as the compiler reads sources.
 std::string as_utf8(std::string_view bytes);
 // UTF-8 of a text that declares nothing: UTF-8, or else windows-1252. NUL becomes a blank.
 std::string text_as_utf8(std::string_view bytes);

@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "base/windows_1252.h"
 #include "frontend/lex/characters.h"
 #include "frontend/lex/literals.h"
 #include "ir/types/utf.h"
@@ -80,23 +81,10 @@ void append_unit(std::string& out, uint32_t unit) {
 
 // Code and length of the source character at `at`.
 Escape read_character(std::string_view inside, size_t at, bool latin1) {
-  if (latin1) return {static_cast<uint8_t>(inside[at]), 1};
+  if (latin1) return {base::of_windows_1252(static_cast<uint8_t>(inside[at])), 1};
   ir::Utf8Character character = ir::read_utf8(inside.substr(at));
   if (character.bytes == 0) return {static_cast<uint8_t>(inside[at]), 1};
   return {character.code, character.bytes};
-}
-
-// The byte of a character of Windows-1252 above 127, which real sources have in a STRING: the euro
-// sign, dashes and quotation marks stand where Latin-1 has control characters. 0: no such byte.
-uint8_t windows_byte(uint32_t code) {
-  static constexpr uint16_t kCodes[] = {
-      0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
-      0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
-      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
-  for (size_t i = 0; i < std::size(kCodes); ++i) {
-    if (kCodes[i] == code) return static_cast<uint8_t>(0x80 + i);
-  }
-  return 0;
 }
 
 // Bytes without escapes, from a source of that charset; `at` is their place in the literal.
@@ -112,7 +100,7 @@ void append_plain(DecodedString& out, std::string_view plain, size_t at, StringC
       out.bytes += ir::utf8(character.code);
     } else if (character.code <= 0xFF) {
       out.bytes += static_cast<char>(character.code);
-    } else if (const uint8_t byte = windows_byte(character.code); byte != 0) {
+    } else if (const uint8_t byte = base::windows_1252_byte(character.code); byte != 0) {
       out.bytes += static_cast<char>(byte);
     } else {
       if (!out.problem) out.problem = wide_character(at + i, plain.substr(i, character.length));

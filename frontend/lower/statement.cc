@@ -71,7 +71,8 @@ void Statements::write(const Stmt& stmt) {
 
 ir::ValueId Values::condition(ExprId expr) {
   const Note& note = infer(expr);
-  if (note.type.valid() && !traits_of(types(), note.type).boolean) {
+  const bool literal = note.flex == Flex::kInteger;  // 0 and 1 are values of BOOL
+  if (note.type.valid() && !literal && !traits_of(types(), note.type).boolean) {
     error(DiagnosticCode::kConditionNotBool, tree_[expr].span,
           "the condition is `" + sema_.report.type_text(note.type) + "`", "compare it: `x <> 0`");
     return code_.zero(elementary(ir::Kind::kBool));
@@ -136,7 +137,9 @@ void Statements::leave_loops() {
 // `goes_on`: the value of the condition with which there is another round.
 void Statements::check_end(ExprId condition, bool goes_on) {
   const Note& note = infer(condition);
-  if (!note.constant || !note.type.valid() || !traits_of(types(), note.type).boolean) return;
+  const bool literal = note.flex == Flex::kInteger;
+  if (!note.constant || !note.type.valid()) return;
+  if (!literal && !traits_of(types(), note.type).boolean) return;
   const auto value = ask<Constants>().fold(condition, elementary(ir::Kind::kBool));
   if (!value || (value->integer != 0) != goes_on) return;
   warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,

@@ -133,8 +133,9 @@ void Parser::Diagram::add_outputs(uint32_t number, const Element& element) {
                      output + "is written by the call, so nothing may stand in between",
                      "write this row right below the box, to a variable of its own");
       } else {
+        const bool several = outputs_[number][i].uses > 1;
         p_.note_only(Code::kOutputNeedsVariable, element.span,
-                     output + "goes to more than one variable",
+                     output + (several ? "goes to more than one place" : "goes to no variable"),
                      "connect it with one variable, and use that elsewhere");
       }
       Expr error;

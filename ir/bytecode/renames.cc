@@ -1,10 +1,12 @@
 #include "ir/bytecode/renames.h"
 
 #include <algorithm>
+#include <map>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "base/limits.h"
+#include "ir/bytecode/edge_names.h"
 #include "ir/bytecode/rename_rules.h"
 #include "ir/bytecode/symbols.h"
 #include "ir/types/listed_name.h"
@@ -40,9 +42,11 @@ class Renamer {
         types_(types),
         globals_(globals),
         programs_(std::move(programs)),
+        edges_(edges_differ(old_image.types, types)),
         paired_(old_image.types.size(), false) {}
 
   std::optional<Image> run() {
+    if (types_.old_names().empty() && !edges_) return std::nullopt;
     find_types();
     find_programs();
     for (const auto& [old, next] : pairs_of_types()) pair(old, next, 0);
@@ -141,23 +145,22 @@ class Renamer {
       const OldNameId rule = members[i].old_name;
       if (rule.valid()) rules.add(members[i].name, types_.old_name(rule), i);
     }
-    std::unordered_map<uint32_t, uint32_t> sources;  // new member -> old one
+    std::map<uint32_t, uint32_t> sources;  // new member -> old one
+    const std::vector<Member>& before = old_.types[old].members;
     if (!rules.empty()) {
-      const std::vector<Member>& before = old_.types[old].members;
       Numbers numbers;
       for (uint32_t i = 0; i < before.size(); ++i) numbers.emplace(fold_name(before[i].name), i);
       rules.resolve(
           numbers, [&](uint32_t i) { return rule_of(before[i].old_name); },
-          [&](uint32_t from, uint32_t to) {
-            sources[to] = from;
-            member_names_.push_back({old, from, members[to].name});
-          });
+          [&](uint32_t from, uint32_t to) { sources[to] = from; });
     }
+    if (edges_) pair_edges(old_.types[old], types_, types_[next], sources);
+    for (const auto& [to, from] : sources) member_names_.push_back({old, from, members[to].name});
     pair_members(old, next, sources, depth);
   }
 
   // What has no name of its own is known by the variable that it is the type of.
-  void pair_members(TypeId old, TypeId next, const std::unordered_map<uint32_t, uint32_t>& sources,
+  void pair_members(TypeId old, TypeId next, const std::map<uint32_t, uint32_t>& sources,
                     uint32_t depth) {
     const std::vector<Member>& members = types_[next].members;
     MemberFinder finder(old_.types, old);
@@ -299,6 +302,7 @@ class Renamer {
   const TypeTable& types_;
   TypeId globals_;
   std::vector<NewProgram> programs_;
+  bool edges_;
   std::vector<bool> paired_;                              // old types
   Numbers old_types_;                                     // by kind and name
   std::unordered_map<uint32_t, uint32_t> renamed_types_;  // new -> old
@@ -314,14 +318,12 @@ class Renamer {
 }  // namespace
 
 std::optional<Image> under_new_names(const Image& old_image, const Program& next) {
-  if (next.types.old_names().empty()) return std::nullopt;
   std::vector<NewProgram> programs;
   for (const ProgramInstance& row : next.instances) programs.push_back({row.name, row.old_name});
   return Renamer(old_image, next.types, next.globals, std::move(programs)).run();
 }
 
 std::optional<Image> under_new_names(const Image& old_image, const Image& next) {
-  if (next.types.old_names().empty()) return std::nullopt;
   std::vector<NewProgram> programs;
   for (uint32_t id : next.program_ids()) {
     programs.push_back({next.instances[id].name, next.instances[id].old_name});

@@ -2,6 +2,7 @@
 // from another place in the area.
 #include <algorithm>
 
+#include "ir/bytecode/edge_names.h"
 #include "online_change/diff/diff_ops.h"
 #include "online_change/diff/moved_parts.h"
 #include "online_change/diff/steps.h"
@@ -27,7 +28,11 @@ void TypeDiffer::add_dropped_member(TypeDiff& diff, TypeId old_type, uint32_t nu
   diff.rows.push_back(make_row(Fate::kDropped, "." + member.name, old_.types.text(member.type), "",
                                reason.empty() ? "removed" : reason,
                                ir::is_listed(member) ? leaves(old_, member.type) : 0));
-  diff.rows.back().may_lose = reason.empty() && !member.constant && ir::is_listed(member);
+  // What an edge remembers is of no use without its contact.
+  const std::string_view edge = ir::edge_of_name(member.name);
+  const bool of_edge = !edge.empty() && edge.size() < member.name.size();
+  diff.rows.back().may_lose =
+      reason.empty() && !member.constant && !of_edge && ir::is_listed(member);
 }
 
 // A step that takes over another one. On the way back it is itself again.

@@ -193,6 +193,10 @@ said 'types\.st:1:[0-9]+: error\[E1084\]: `P`: `q`: the type <pointer> has no kn
 printf 'PROGRAM P VAR a, b : BOOL; END_VAR\nFBD\n  a S= b;\nEND_FBD\nEND_PROGRAM\n' >set.st
 expect 1 stc export set.st -o x.xml --as 61131-10 --without-sources
 said 'E1084.*a DataSink has no modifiers'
+printf "{attribute 'qualified_only'}\n{attribute 'list' := 'Keys'}\nVAR_GLOBAL a : BOOL; END_VAR\n" >list.st
+cat p.st >>list.st
+expect 1 stc export list.st -o x.xml --as 61131-10 --without-sources
+said 'E1084.*attributes of lists of variables have no element'
 cp "$samples"/iec10.xml .
 expect 0 stc export ladder.xml -o ladder10.xml --as 61131-10 --without-sources
 rm -rf first second

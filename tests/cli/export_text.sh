@@ -21,7 +21,7 @@ whole() {
     rm -rf back
     stc import one.xml -o back >out 2>err || fail "$file: import"
     iconv -f UTF-8 -t UTF-8 one.st >/dev/null 2>&1 || {
-      iconv -f ISO-8859-1 -t UTF-8 one.st >latin.st
+      iconv -f WINDOWS-1252 -t UTF-8 one.st >latin.st
       mv latin.st one.st
     }
     cmp -s one.st back/one.st || {

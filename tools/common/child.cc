@@ -163,7 +163,14 @@ base::Status run_beside(const std::string& tool, const std::vector<std::string>&
   return base::Error{base::Refusal::kInternal, tool + " failed without a reason"};
 }
 
-base::Result<ConnectedChild> ConnectedChild::start(const std::vector<std::string>& command) {
+base::Result<ConnectedChild> ConnectedChild::start(const std::vector<std::string>& command,
+                                                   Errors errors) {
+  std::unique_ptr<VisibleErrors> visible;
+  if (errors == Errors::kVisible) {
+    auto made = VisibleErrors::make();
+    if (!made.ok()) return made.error();
+    visible = std::move(*made);
+  }
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     return base::Error{base::Refusal::kInternal, "no pair of sockets"};
@@ -171,15 +178,24 @@ base::Result<ConnectedChild> ConnectedChild::start(const std::vector<std::string
   base::Result<pid_t> child = spawn(command, [&](FileActions& actions) {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    if (!visible) return;
+    posix_spawn_file_actions_adddup2(&actions, visible->for_child(), STDERR_FILENO);
   });
   ::close(ends[1]);
-  if (child.ok()) return ConnectedChild(*child, ends[0]);
-  ::close(ends[0]);
-  return child.error();
+  if (!child.ok()) {
+    ::close(ends[0]);
+    return child.error();
+  }
+  if (visible) visible->started();
+  ConnectedChild out(*child, ends[0]);
+  out.errors_ = std::move(visible);
+  return out;
 }
 
 ConnectedChild::ConnectedChild(ConnectedChild&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), socket_(std::exchange(other.socket_, -1)) {}
+    : pid_(std::exchange(other.pid_, -1)),
+      socket_(std::exchange(other.socket_, -1)),
+      errors_(std::move(other.errors_)) {}
 
 ConnectedChild::~ConnectedChild() {
   if (socket_ >= 0) ::close(socket_);
@@ -188,7 +204,9 @@ ConnectedChild::~ConnectedChild() {
 
 int ConnectedChild::wait() {
   const int pid = std::exchange(pid_, -1);
-  return pid > 0 ? wait_for(pid) : -1;
+  const int code = pid > 0 ? wait_for(pid) : -1;
+  errors_.reset();
+  return code;
 }
 
 void ConnectedChild::end() {

@@ -1,11 +1,13 @@
 // Another program as a child: the tool beside this one, or ssh.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/bytes.h"
 #include "base/result.h"
+#include "tools/common/visible_errors.h"
 
 namespace tools {
 
@@ -15,15 +17,18 @@ enum class Messages : uint8_t { kShown, kOnlyOfFailure };
 base::Status run_beside(const std::string& tool, const std::vector<std::string>& arguments,
                         Messages messages = Messages::kShown);
 
-// Runs `program` (looked up in PATH) with both its standard streams on one socket; stderr is
-// shared. Ends it with the connection.
+// Runs `program` (looked up in PATH) with both its standard streams on one socket. Ends it with the
+// connection.
 class ConnectedChild {
  public:
-  static base::Result<ConnectedChild> start(const std::vector<std::string>& command);
+  enum class Errors : uint8_t { kOwn, kVisible };  // standard error: ours, or made visible there
+  static base::Result<ConnectedChild> start(const std::vector<std::string>& command,
+                                            Errors errors = Errors::kOwn);
   ConnectedChild(ConnectedChild&& other) noexcept;
   ConnectedChild& operator=(ConnectedChild&&) = delete;
   ~ConnectedChild();  // waits for its end
-  // The exit code of the child, once it has ended; -1 when it was killed.
+  // The exit code of the child, once it has ended; -1 when it was killed. What it wrote to its
+  // standard error is shown.
   int wait();
   // Asks it to end, as a terminal does; it need not wait for what it is waiting for.
   void end();
@@ -34,6 +39,7 @@ class ConnectedChild {
   ConnectedChild(int pid, int socket) : pid_(pid), socket_(socket) {}
   int pid_ = -1;
   int socket_ = -1;
+  std::unique_ptr<VisibleErrors> errors_;  // goes last
 };
 
 // Messages of any bytes between a tool and its child, over their socket. Each is a u32 length and

@@ -44,7 +44,8 @@ std::string said_by(tools::ConnectedChild child) {
 std::string version_at(const std::string& host) {
   const auto command = tools::ssh_command(host, "stvm version");
   if (!command.ok()) return {};
-  base::Result<tools::ConnectedChild> child = tools::ConnectedChild::start(*command);
+  base::Result<tools::ConnectedChild> child =
+      tools::ConnectedChild::start(*command, tools::ConnectedChild::Errors::kVisible);
   if (!child.ok()) return {};
   const std::string said = said_by(std::move(*child));
   if (!said.starts_with(kFirstWord)) return {};

@@ -46,7 +46,8 @@ base::Result<base::Bytes> fetch_file(const std::string& url, uint64_t size) {
   const std::string file = folder->file("file");
   base::Result<tools::ConnectedChild> curl = tools::ConnectedChild::start(
       {"curl", "--fail", "--silent", "--show-error", "--proto", "=https", "--max-time", "600",
-       "--max-filesize", std::to_string(size), "--output", file, "--", url});
+       "--max-filesize", std::to_string(size), "--output", file, "--", url},
+      tools::ConnectedChild::Errors::kVisible);
   if (!curl.ok()) return curl.error();
   if (const int code = curl->wait(); code != 0) {
     return base::Error{

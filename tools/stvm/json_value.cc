@@ -81,6 +81,7 @@ class Reader {
 
  private:
   char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+  void step() { at_ = std::min(at_ + 1, text_.size()); }
   void skip(std::string_view wanted) {
     if (text_.substr(at_).starts_with(wanted)) at_ += wanted.size();
   }
@@ -89,14 +90,14 @@ class Reader {
   void members() {
     json_.begin_object();
     ++depth_;
-    for (++at_; at_ < text_.size() && peek() != ')'; skip(", ")) {
+    for (step(); at_ < text_.size() && peek() != ')'; skip(", ")) {
       const size_t end = std::min(text_.find(" := ", at_), text_.size());
       json_.key(text_.substr(at_, end - at_));
       at_ = end;
       skip(" := ");
       value({});
     }
-    ++at_;
+    step();
     --depth_;
     json_.end_object();
   }
@@ -104,8 +105,8 @@ class Reader {
   void elements(std::string_view type) {
     json_.begin_array();
     ++depth_;
-    for (++at_; at_ < text_.size() && peek() != ']'; skip(", ")) value(type);
-    ++at_;
+    for (step(); at_ < text_.size() && peek() != ']'; skip(", ")) value(type);
+    step();
     --depth_;
     json_.end_array();
   }
@@ -113,15 +114,15 @@ class Reader {
   std::string quoted(char quote) {
     std::string out;
     const size_t digits = quote == '"' ? 4 : 2;
-    for (++at_; at_ < text_.size() && peek() != quote; ++at_) {
+    for (step(); at_ < text_.size() && peek() != quote; step()) {
       if (peek() != '$') {
         out += peek();
         continue;
       }
-      ++at_;
+      step();
       escaped(out, digits);
     }
-    ++at_;
+    step();
     return out;
   }
 
@@ -137,7 +138,7 @@ class Reader {
       out += kMeaning[letter];
     } else if (read.ec == std::errc() && read.ptr == begin + digits) {
       append_utf8(out, unit);
-      at_ += digits - 1;
+      at_ += digits - 1;  // none is behind the end: `read` has seen them
     } else {
       out += peek();
     }

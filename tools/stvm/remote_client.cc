@@ -21,7 +21,8 @@ base::Result<std::unique_ptr<RemoteClient>> RemoteClient::connect(const std::str
   if (!directory.empty()) command += " --dir " + quoted(directory);
   base::Result<std::vector<std::string>> ssh = tools::ssh_command(host, command);
   if (!ssh.ok()) return ssh.error();
-  base::Result<tools::ConnectedChild> child = tools::ConnectedChild::start(*ssh);
+  base::Result<tools::ConnectedChild> child =
+      tools::ConnectedChild::start(*ssh, tools::ConnectedChild::Errors::kVisible);
   if (!child.ok()) return child.error();
   auto client =
       vm::SocketClient::over(vm::Descriptor(child->take_socket()), "on " + host, patience_s);
@@ -30,7 +31,10 @@ base::Result<std::unique_ptr<RemoteClient>> RemoteClient::connect(const std::str
 
 base::Result<base::Bytes> RemoteClient::exchange(base::ByteSpan request) {
   base::Result<base::Bytes> answer = client_->exchange(request);
-  if (!answer.ok() && answer.error().refusal == base::Refusal::kNotRunning) child_.end();
+  if (!answer.ok() && answer.error().refusal == base::Refusal::kNotRunning) {
+    child_.end();
+    child_.wait();  // what ssh says about it stands in front of the error
+  }
   return answer;
 }
 

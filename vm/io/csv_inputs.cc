@@ -111,6 +111,7 @@ class CsvParser {
       }
       ++cells_;
       if (cell == "lost") {
+        if (lost_column_ != kNone) fail(at, "a second column `lost`");
         lost_column_ = number;
         return;
       }

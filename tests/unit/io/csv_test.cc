@@ -41,7 +41,9 @@ TEST(CsvInputs, ValuesThatDoNotFitAreRefused) {
         ".5,0", "0.1234567,0", "9999999999999999,0", "-0.5,0"}) {
     EXPECT_FALSE(CsvInputs::parse("f", std::string("time_ms,%IW2\n") + row).ok()) << row;
   }
-  for (const char* header : {"", "time_ms", "time_ms,", "time_ms,%IW2,", "time_ms,%MW2"}) {
+  for (const char* header : {"", "time_ms", "time_ms,", "time_ms,%IW2,", "time_ms,%MW2",
+                             "time_ms,lost,lost\n0,TRUE,TRUE",
+                             "time_ms,%IX0.0,lost,lost\n0,1,1,1"}) {
     EXPECT_FALSE(CsvInputs::parse("f", header).ok()) << header;
   }
 }

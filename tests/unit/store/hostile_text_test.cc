@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "tools/common/fate_report.h"
+#include "tools/common/json.h"
+#include "tools/stvm/json_value.h"
 
 namespace tools {
 namespace {
@@ -21,6 +23,18 @@ TEST(HostileText, AFateReportShowsControlCharacters) {
     EXPECT_NE(report.find(shown), std::string::npos) << shown << " in " << report;
   }
   EXPECT_NE(report.find("\npredicted pause"), std::string::npos);
+}
+
+TEST(HostileText, AValueThatEndsInTheMiddleBecomesWholeJson) {
+  const auto json = [](const char* type, const char* literal) {
+    JsonWriter out;
+    stvm::typed_value(out, type, literal);
+    return out.finish();
+  };
+  EXPECT_EQ(json("ARRAY[0..1] OF INT", "[["), "{\"type\":\"ARRAY[0..1] OF INT\",\"value\":[[]]}\n");
+  EXPECT_EQ(json("S", "(a := 'x"), "{\"type\":\"S\",\"value\":{\"a\":\"x\"}}\n");
+  EXPECT_EQ(json("S", "(a := (b"), "{\"type\":\"S\",\"value\":{\"a\":{\"b\":\"\"}}}\n");
+  EXPECT_EQ(json("STRING", "['$"), "{\"type\":\"STRING\",\"value\":[\"\\u0000\"]}\n");
 }
 
 }  // namespace

@@ -1,0 +1,96 @@
+#include "ir/bytecode/edge_names.h"
+
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "ir/types/old_names.h"
+
+namespace ir {
+
+std::string_view edge_of_name(std::string_view name) {
+  if (name.find('#') == name.npos) return {};
+  for (const std::string_view kind : {"#rising", "#falling"}) {
+    const size_t at = name.find(kind);
+    if (at == name.npos) continue;
+    const size_t end = at + kind.size();
+    if (end == name.size() || name[end] == '#') return name.substr(0, end);
+  }
+  return {};
+}
+
+namespace {
+
+// `operand#rising` of a BOOL; "" where it is no such name. A method's variable may have one of
+// these words as its name: `Method#rising_count`.
+std::string_view edge_of(const Member& member) {
+  if (member.type.index != static_cast<uint32_t>(Kind::kBool)) return {};
+  return edge_of_name(member.name);
+}
+
+// The same for the same names in any order.
+uint64_t sum_of_edges(const TypeTable& types) {
+  uint64_t sum = 0;
+  for (uint32_t i = kElementaryCount; i < types.size(); ++i) {
+    const Type& type = types[TypeId(i)];
+    if (type.kind != Kind::kFunctionBlock && type.kind != Kind::kProgram) continue;
+    for (const Member& member : type.members) {
+      if (edge_of(member).empty()) continue;
+      sum += base::name_hash(type.name + "." + member.name);
+    }
+  }
+  return sum;
+}
+
+// By operand and kind, in their order: what has such a name and `other` does not.
+using Edges = std::unordered_map<std::string, std::vector<uint32_t>>;
+
+}  // namespace
+
+bool edges_differ(const TypeTable& old_types, const TypeTable& types) {
+  return sum_of_edges(old_types) != sum_of_edges(types);
+}
+
+void pair_edges(const Type& old, const TypeTable& types, const Type& next,
+                std::map<uint32_t, uint32_t>& sources) {
+  std::unordered_set<uint32_t> taken;
+  for (const auto& [to, from] : sources) taken.insert(from);
+  std::unordered_map<std::string, uint32_t> before;
+  for (uint32_t i = 0; i < old.members.size(); ++i) {
+    if (!edge_of(old.members[i]).empty()) before.emplace(fold_name(old.members[i].name), i);
+  }
+  if (before.empty()) return;
+  std::vector<uint32_t> comes;
+  for (uint32_t i = 0; i < next.members.size(); ++i) {
+    if (edge_of(next.members[i]).empty() || sources.contains(i)) continue;
+    const auto twin = before.find(fold_name(next.members[i].name));
+    if (twin == before.end())
+      comes.push_back(i);
+    else
+      taken.insert(twin->second);
+  }
+  Edges gone;
+  for (uint32_t i = static_cast<uint32_t>(old.members.size()); i-- > 0;) {
+    const std::string_view edge = edge_of(old.members[i]);
+    if (!edge.empty() && !taken.contains(i)) gone[fold_name(edge)].push_back(i);
+  }
+  for (const uint32_t to : comes) {
+    const Member& member = next.members[to];
+    std::vector<std::string_view> names{member.name};
+    if (member.old_name.valid()) {
+      for (std::string_view name : old_names_of(types.old_name(member.old_name)))
+        names.push_back(name);
+    }
+    for (const std::string_view name : names) {
+      const auto found = gone.find(fold_name(edge_of_name(name)));
+      if (found == gone.end() || found->second.empty()) continue;
+      sources[to] = found->second.back();
+      found->second.pop_back();
+      break;
+    }
+  }
+}
+
+}  // namespace ir

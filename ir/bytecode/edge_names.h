@@ -1,0 +1,27 @@
+// What an edge in a drawing remembers is a variable of the POU, `operand#rising#target`
+// (frontend/parse/diagram.h). Where the contact acts on something else in the new version, or the
+// drawing puts something between, the target is another one, and the edge is the same: no button
+// that is held is pressed again (case 39).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string_view>
+
+#include "ir/types/types.h"
+
+namespace ir {
+
+// `operand#rising` or `operand#falling` of such a name; "" of others.
+std::string_view edge_of_name(std::string_view name);
+
+// Do two versions' types differ in the names of such variables, or is there a hash collision?
+// Cost: each name of a member of a POU.
+bool edges_differ(const TypeTable& old_types, const TypeTable& types);
+
+// Adds to `sources`, new member -> old one of `old` and `next` by number: each edge that is known
+// by its name in one version only goes on as one of the same operand, in their order.
+void pair_edges(const Type& old, const TypeTable& types, const Type& next,
+                std::map<uint32_t, uint32_t>& sources);
+
+}  // namespace ir
