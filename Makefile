@@ -102,7 +102,7 @@ asan-memory: setup
 	@cmake --build build/asan -j $(JOBS) --target $(MEMORY:%=test_%) golden fuzz_targets
 	@ctest --test-dir build/asan --output-on-failure -j $(TEST_JOBS) -R '^(unit_$(call one_of,$(MEMORY))|golden_.*|fuzz_.*)$$'
 
-THREADED := base runtime io resources exchange modbus mqtt store workspace
+THREADED := base runtime io resources exchange modbus mqtt fleet store workspace
 tsan: setup
 	@cmake --preset tsan >/dev/null
 	@cmake --build build/tsan -j $(JOBS) --target $(THREADED:%=test_%)

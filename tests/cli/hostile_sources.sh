@@ -38,6 +38,17 @@ said 'help: Raise the limit of the shell'
 # Many instances, long lists of initial values.
 { echo "$block"; main 'a : ARRAY[1..1000000] OF F;' 'a[1]();'; } >many.st
 builds many.st
+{ echo "$block"; main 'a : ARRAY[1..8000000] OF F;' 'a[1]();'; } >more.st
+within 2100000 0 build more.st
+{ echo VAR_GLOBAL; seq 3500000 | sed 's/.*/g& : INT;/'; echo END_VAR; main '' 'g1 := g2;'; } >globals.st
+refuses globals.st 'R0118: memory needed exceeds the limit: more than [0-9]+ MiB' 7
+rm globals.st
+# Ordinary code without comments: 60 bytes of memory for each of its own, beside 40 MiB.
+seq 20000 | awk '{ printf "FUNCTION_BLOCK Block_%d\nVAR_INPUT a, b : INT; END_VAR\nVAR_OUTPUT q : BOOL; END_VAR\n", $1
+  print "VAR n : DINT; END_VAR\n  IF a > b THEN\n    n := n + a * 2;\n  ELSE\n    n := n - b;\n  END_IF"
+  print "  q := n > 100;\nEND_FUNCTION_BLOCK" }' >dense.st
+main 'x : Block_1;' 'x(a := 1);' >>dense.st
+within $((40 * 1024 + $(wc -c <dense.st) * 60 / 1024)) 0 build dense.st
 main 'a : ARRAY[1..5000000] OF INT := [5000000(0)];' 'a[1] := a[2];' >list.st
 builds list.st
 main 'a : ARRAY[1..5000000] OF INT := [2500000(1, 2)];' 'a[1] := a[2];' >pairs.st

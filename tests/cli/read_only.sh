@@ -32,6 +32,9 @@ runs_without_writing() {
   expect 0 stvm get total --dir $dir
   said 'total=10[0-9]*'
   wait_for 'alarm: .*Read-only file system' stvm status --dir $dir
+  expect 0 stvm events --dir $dir
+  said 'error alarm.*retained values are not being saved: .*Read-only file system'
+  said 'error alarm.*/slot_a: Read-only file system'
   expect 0 stvm force total=7 --dir $dir
   expect 0 stvm unforce --all --dir $dir
   expect 7 stvm change v2.st --dir $dir --yes

@@ -55,6 +55,8 @@ class ControllerService : public vm::Service {
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
   // Sets the version of the program that serves.
   void is_version(std::string version) { version_ = std::move(version); }
+  // So many bytes of one upload are taken; gives the limit of before. For tests.
+  uint64_t limit_uploads(uint64_t bytes) { return std::exchange(most_upload_, bytes); }
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
   // A replay: no cycle comes while a request is carried out, so idle time is what it was then.
@@ -312,6 +314,7 @@ class ControllerService : public vm::Service {
   std::vector<Trial> undone_;  // of which the last one can be brought again
   uint64_t edits_made_ = 0;    // since the start: names
   base::Bytes upload_;
+  uint64_t most_upload_ = base::kMaxImageBytes;
   uint64_t upload_of_ = 0;  // session
   std::string upload_by_;
   uint64_t live_of_ = 0;

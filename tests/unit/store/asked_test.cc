@@ -249,8 +249,32 @@ TEST_F(Asked, SetWritesAtOneBoundaryOrIsRefused) {
   EXPECT_EQ(plc_.get("wide[98280]"), "0") << "all or none";
 }
 
+// As many names as a request may have: far apart, and in one line of memory.
+TEST_F(Asked, ForcesComeAndGoAtOneBoundary) {
+  for (const int stride : {24, 1}) {
+    vm::Request request = set(4096, stride);
+    request.command = Command::kForce;
+    auto body = ask(request);
+    ASSERT_TRUE(body.ok()) << base::to_string(body.error());
+    EXPECT_EQ(jobs_, 1);
+    expect_bounded("force");
+    EXPECT_EQ(plc_.controller().forces().size(), 4096u);
+    ASSERT_TRUE(ask({.command = Command::kForces}).ok());
+    EXPECT_EQ(jobs_, 0);
+    expect_bounded("forces");
+    request.command = Command::kUnforce;
+    request.values.clear();
+    body = ask(request);
+    ASSERT_TRUE(body.ok()) << base::to_string(body.error());
+    EXPECT_EQ(jobs_, 1);
+    expect_bounded("unforce");
+    EXPECT_TRUE(plc_.controller().forces().empty());
+  }
+}
+
 TEST_F(Asked, PagesOfAnythingElseNeedNoBoundaryOrABoundedCopy) {
-  for (const Command command : {Command::kForces, Command::kImage, Command::kJournal}) {
+  for (const Command command : {Command::kForces, Command::kImage, Command::kJournal,
+                                Command::kEvents}) {
     ASSERT_TRUE(ask({.command = command}).ok());
     EXPECT_EQ(jobs_, 0) << vm::command_name(command);
   }

@@ -59,7 +59,7 @@ class Plc : public vm::Boundary {
 
   vm::Controller& controller() { return *controller_; }
   vm::VirtualClock& clock() { return clock_; }
-  vm::Service& service() { return *service_; }
+  stvm::ControllerService& service() { return *service_; }
   online_change::Store& store() { return *store_; }
   // What its field devices say of themselves; there are none at first.
   std::vector<vm::DeviceStatus>& devices() { return io_.devices; }

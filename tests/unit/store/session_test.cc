@@ -2,6 +2,7 @@
 // when it ends, however it ends.
 #include <gtest/gtest.h>
 
+#include "base/limits.h"
 #include "base/sha256.h"
 #include "online_change/package/package.h"
 #include "tests/sim/heap_use.h"
@@ -42,6 +43,16 @@ TEST_F(Session, AnUploadEndsWithItsConnection) {
   const base::Status rest = upload(3, kAll + 1, 1);
   ASSERT_FALSE(rest.ok());
   EXPECT_EQ(rest.error().refusal, Refusal::kProtocol);
+}
+
+TEST_F(Session, AnUploadIsBounded) {
+  constexpr uint64_t kMost = 1000;
+  EXPECT_EQ(plc_.service().limit_uploads(kMost), base::kMaxImageBytes);
+  EXPECT_TRUE(upload(1, 0, kMost).ok());
+  const base::Status more = upload(1, kMost, 1);
+  ASSERT_FALSE(more.ok());
+  EXPECT_EQ(more.error().refusal, Refusal::kTooLarge);
+  EXPECT_TRUE(upload(1, 0, 1).ok()) << "another one begins";
 }
 
 // The tool says what it has sent; other bytes are not even looked at.
