@@ -31,12 +31,12 @@ void collect(const base::SourceMap& sources, base::Diagnostics& diagnostics, Out
   outcome.messages = messages_of(sources, diagnostics);
 }
 
-frontend::CompileOptions options_of(const TestFile& test) {
+frontend::CompileOptions options_of(const TestFile& test, size_t version) {
   frontend::CompileOptions options;
   options.name = "golden";
   options.strict_strings =
       std::find(test.options.begin(), test.options.end(), "--strict-strings") != test.options.end();
-  std::string dialect = test.option("--dialect", "codesys");
+  std::string dialect = test.option_of(version, "--dialect", "codesys");
   if (dialect == "iec") options.dialect = frontend::Dialect::kIec;
   if (dialect == "twincat") options.dialect = frontend::Dialect::kTwincat;
   for (size_t i = 0; i + 1 < test.options.size(); ++i) {
@@ -73,15 +73,15 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   sources.add(test.name, test.versions[version]);
   for (const Source& used : test.used) sources.add(used.name, used.text);
   base::WarningPolicy warnings;
-  const auto mistakes = frontend::silence_warnings(sources, options_of(test), warnings);
+  const auto mistakes = frontend::silence_warnings(sources, options_of(test, version), warnings);
   base::Diagnostics diagnostics(warnings);
   for (const base::Diagnostic& mistake : mistakes) diagnostics.add(mistake);
   std::optional<ir::Program> program;
   if (test.has_option("--all-resources")) {
-    auto all = frontend::compile_resources(sources, options_of(test), diagnostics);
+    auto all = frontend::compile_resources(sources, options_of(test, version), diagnostics);
     if (all) program = std::move(all->programs.front().program);
   } else {
-    program = frontend::compile(sources, options_of(test), diagnostics);
+    program = frontend::compile(sources, options_of(test, version), diagnostics);
   }
   collect(sources, diagnostics, outcome);
   if (!program) {
@@ -136,7 +136,7 @@ std::string tree_of(const TestFile& test, Outcome& outcome) {
   sources.add(test.name, test.versions[0]);
   base::Diagnostics diagnostics;
   frontend::Tree tree;
-  frontend::parse_all(sources, options_of(test), tree, diagnostics);
+  frontend::parse_all(sources, options_of(test, 0), tree, diagnostics);
   collect(sources, diagnostics, outcome);
   return frontend::print(tree);
 }

@@ -61,6 +61,8 @@ void take_line(TestFile& test, size_t index) {
   if (line.substr(0, kVersion.size()) == kVersion) {
     // Blank lines in front keep the line numbers of the whole file.
     test.versions.emplace_back(index, '\n');
+    std::vector<std::string> parts = words(std::string(line.substr(kVersion.size())));
+    test.version_options.emplace_back(parts.begin() + (parts.empty() ? 0 : 1), parts.end());
   } else if (line.substr(0, kMode.size()) == kMode) {
     std::vector<std::string> parts = words(std::string(line.substr(kMode.size())));
     test.mode = parts.empty() ? "" : parts[0];
@@ -71,6 +73,14 @@ void take_line(TestFile& test, size_t index) {
     take_check(test, line.substr(kCheck.size()), index);
   }
   test.versions.back() += test.lines[index] + "\n";
+}
+
+std::string value_of(const std::vector<std::string>& options, const std::string& wanted,
+                     const std::string& otherwise) {
+  for (size_t i = 0; i + 1 < options.size(); ++i) {
+    if (options[i] == wanted) return options[i + 1];
+  }
+  return otherwise;
 }
 
 bool is_output(std::string_view line) {
@@ -93,10 +103,12 @@ bool TestFile::has_option(const std::string& wanted) const {
 }
 
 std::string TestFile::option(const std::string& wanted, const std::string& otherwise) const {
-  for (size_t i = 0; i + 1 < options.size(); ++i) {
-    if (options[i] == wanted) return options[i + 1];
-  }
-  return otherwise;
+  return value_of(options, wanted, otherwise);
+}
+
+std::string TestFile::option_of(size_t version, const std::string& wanted,
+                                const std::string& otherwise) const {
+  return value_of(version_options[version], wanted, option(wanted, otherwise));
 }
 
 base::Result<TestFile> read_test(const std::string& path) {
@@ -107,6 +119,7 @@ base::Result<TestFile> read_test(const std::string& path) {
   test.name = std::filesystem::path(path).filename().string();
   test.lines = split(*text, '\n');
   test.versions.emplace_back();
+  test.version_options.emplace_back();
   test.steps.push_back({});
   for (size_t i = 0; i < test.lines.size(); ++i) take_line(test, i);
   base::Status used = read_used_sources(test);

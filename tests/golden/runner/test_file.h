@@ -4,7 +4,7 @@
 //   // MODE: run [--scans N] [--dialect iec] [--define NAME[=VALUE]]
 //   // USE: tests/corpus/date/*.st   more sources of every version, from the root of the repository
 //   ...source...
-//   // --- v2             begins the next version (mode change)
+//   // --- v2 [--dialect iec]   begins the next version (mode change)
 //   // > run 3            script: run N | show NAMES | set NAME VALUE | change K [--allow-loss] |
 //   //                    undo | accept | force NAME VALUE | unforce NAME | forces
 //   // CHECK: text        one line of output of what stands above
@@ -43,12 +43,15 @@ struct TestFile {
   std::vector<std::string> options;
   std::vector<std::string> lines;
   std::vector<std::string> versions;  // source texts; comment lines stay, so line numbers hold
-  std::vector<Source> used;           // of the USE lines, in their order
-  std::vector<Step> steps;            // steps[0] has no command
+  std::vector<std::vector<std::string>> version_options;  // go before those of MODE
+  std::vector<Source> used;                               // of the USE lines, in their order
+  std::vector<Step> steps;                                // steps[0] has no command
   std::vector<ScanCheck> scans;
 
   bool has_option(const std::string& name) const;
   std::string option(const std::string& name, const std::string& otherwise) const;
+  std::string option_of(size_t version, const std::string& name,
+                        const std::string& otherwise) const;
 };
 
 base::Result<TestFile> read_test(const std::string& path);
