@@ -45,7 +45,10 @@ expect 7 stvm revert --yes --dir plc
 said 'R0305'
 
 # A trap in the first cycles.
-expect 0 stvm change traps.st --yes --dir plc
+expect 7 stvm change traps.st --yes --dir plc
+said 'R0325: E1 undone by the controller at 2.*: a trap on trial: .*division'
+said '^switched'
+if grep -q 'on trial: `stvm accept`' out; then fail "on trial, it says"; fi
 wait_for 'a trap on trial: cycle [0-9]+, task t: traps.st:2 .Main.: division' stvm journal --dir plc
 said 'undone .*by controller'
 expect 0 stvm status --dir plc
@@ -62,7 +65,9 @@ expect 7 stvm change sick.st --yes --health Main.level --dir plc
 said 'R0402.*Main.level'
 expect 7 stvm change sick.st --yes --health Main.unknown --dir plc
 said 'R0401'
-expect 0 stvm change sick.st --yes --health Main.well --dir plc
+expect 7 stvm change sick.st --yes --health Main.well --dir plc --format json
+said '"switched": ?true'
+said '"refused": ?"R0325"'
 wait_for 'health condition `Main.well` is FALSE' stvm journal --dir plc
 
 # Whoever wants to look at the trap himself; and undo by hand runs the tasks again.

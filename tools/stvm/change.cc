@@ -10,6 +10,7 @@
 #include "tools/stvm/change_follow.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/compiler.h"
+#include "tools/stvm/first_scans.h"
 #include "tools/stvm/fleet_edit.h"
 #include "tools/stvm/package_making.h"
 #include "tools/stvm/switch_option_rows.h"
@@ -28,7 +29,7 @@ constexpr tools::OptionRow kChangeOptions[] = {
     STVM_FORMAT_OPTION,
 };
 constexpr tools::OptionRow kRevertOptions[] = {STVM_CONTROLLER_OPTIONS, STVM_SWITCH_OPTIONS,
-                                                   STVM_FORMAT_OPTION};
+                                               STVM_FORMAT_OPTION};
 constexpr tools::Command kRevertCommand{
     "revert",       "", "Changes to the program that ran before the last accepted change.",
     kRevertOptions, 0,  0};
@@ -109,6 +110,11 @@ int finish(const tools::Options& options, const SwitchOptions& how, ControllerCl
                                       ? change_behind_others(options, how, client, make)
                                       : change(options, how, client, make);
   if (!outcome.ok()) return refuse(outcome.error());
+  const bool watched = (how.switch_flags & vm::kNoWayBack) == 0 && !outcome->permanent;
+  if (outcome->report && watched) {
+    base::Status stays = first_scans(client);
+    if (!stays.ok()) outcome->refused = stays.error();
+  }
   print(how, *outcome);
   return outcome->refused ? refuse_reported(*outcome->refused) : tools::kOk;
 }

@@ -43,6 +43,8 @@ inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
 // So many cycles after a switch, a version on trial that traps is undone by the controller (X7).
 inline constexpr uint64_t kProbationCycles = 1000;
 inline constexpr int kProbationLookMs = 20;  // between two looks at it
+// In the alarm that says so.
+inline constexpr const char* kGivenBackMark = " undone by the controller at ";
 // ns since 1970.
 int64_t wall_time_ns();
 // "2026-03-01T08:00:00.123Z"

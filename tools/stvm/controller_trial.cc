@@ -146,7 +146,7 @@ void ControllerService::give_back(const std::string& why) {
     }
   } while (undone.ok() && chain != 0 && !trials_.empty() && trials_.back().chain == chain);
   if (undone.ok()) {
-    given_back_ = edits + " undone by the controller at " + time_text(wall_time_()) + ": " + why;
+    given_back_ = edits + kGivenBackMark + time_text(wall_time_()) + ": " + why;
     return;
   }
   not_undone_ = "the version on trial was not undone after " + why + ": " +

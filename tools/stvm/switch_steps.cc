@@ -93,6 +93,7 @@ std::vector<std::string> exchange_notes(vm::StatusReport& status) {
 void print_text(const Outcome& outcome) {
   if (!outcome.report) return;
   std::fputs(switch_text("switched", *outcome.report).c_str(), stdout);
+  if (outcome.refused) return;  // the controller took it back
   std::printf("%s\n", outcome.permanent
                           ? "accepted: it boots next"
                           : "on trial: `stvm accept` makes it final, `stvm undo` takes it back");
