@@ -20,7 +20,7 @@ for policy in '' "{attribute 'on_trap' := 'stop_task'}"; do
   program late.st 'bits : BYTE;' 'IF bad = 1 THEN z := 1 / z; END_IF' "$policy"
   sed 's|z := 1 / z|z := 7|' late.st >mended.st
   serve plc --record run.rec v1.st
-  expect 0 stvm change traps.st --yes --dir plc
+  expect 7 stvm change traps.st --yes --dir plc
   wait_for 'a trap on trial' stvm journal --dir plc
   expect 0 stvm change traps.st --yes --no-auto-undo --dir plc
   wait_for 'trap .*|division' stvm status --dir plc

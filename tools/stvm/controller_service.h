@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "base/limits.h"
 #include "online_change/apply/change.h"
 #include "online_change/plan/every_fate.h"
 #include "online_change/store/boot.h"
@@ -34,9 +35,10 @@ namespace stvm {
 struct StartReport {
   std::optional<base::Digest> trial_lost;
   std::vector<std::string> alarms;
-  std::string fault = {};  // of Boot
-  std::string who = {};    // started it
-  Trust* trust = nullptr;  // keys of the controller; null: it has none
+  std::string fault = {};                       // of Boot
+  std::string who = {};                         // started it
+  Trust* trust = nullptr;                       // keys of the controller; null: it has none
+  uint64_t most_upload = base::kMaxImageBytes;  // bytes; tests have less
 };
 // What finds too little time before the next cycle is tried again so much later.
 inline constexpr int64_t kBetweenAttemptsNs = 1'000'000;
@@ -57,8 +59,6 @@ class ControllerService : public vm::Service {
                     online_change::RetainKeeper::WallTime wall_time = wall_time_ns);
   // Sets the version of the program that serves.
   void is_version(std::string version) { version_ = std::move(version); }
-  // So many bytes of one upload are taken; gives the limit of before. For tests.
-  uint64_t limit_uploads(uint64_t bytes) { return std::exchange(most_upload_, bytes); }
   // What changes something from now on is noted there; it must outlive this.
   void record(vm::Recorder& recorder) { recorder_ = &recorder; }
   // A replay: no cycle comes while a request is carried out, so idle time is what it was then.
@@ -316,7 +316,6 @@ class ControllerService : public vm::Service {
   std::vector<Trial> undone_;  // of which the last one can be brought again
   uint64_t edits_made_ = 0;    // since the start: names
   base::Bytes upload_;
-  uint64_t most_upload_ = base::kMaxImageBytes;
   uint64_t upload_of_ = 0;  // session
   std::string upload_by_;
   uint64_t live_of_ = 0;

@@ -29,7 +29,7 @@ base::Result<base::Bytes> ControllerService::upload(const vm::Request& request) 
   if (upload_of_ != session_ || request.offset != upload_.size()) {
     return base::Error{base::Refusal::kProtocol, "parts of the package are missing"};
   }
-  if (upload_.size() + request.data.size() > most_upload_) {
+  if (upload_.size() + request.data.size() > start_.most_upload) {
     return base::Error{base::Refusal::kTooLarge, "the package is longer than the limit"};
   }
   upload_.insert(upload_.end(), request.data.begin(), request.data.end());

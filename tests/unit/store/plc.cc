@@ -75,7 +75,8 @@ base::Status Plc::boot(const std::optional<ir::VerifiedImage>& given, bool creat
   controller_ = std::move(*controller);
   service_ = std::make_unique<stvm::ControllerService>(
       *controller_, clock_, *store_, *this,
-      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, {}, trust_.get()},
+      stvm::StartReport{boot_->trial_lost, boot_->alarms, boot_->fault, {}, trust_.get(),
+                        most_upload},
       [this] { return wall_ns; });
   service_->resume(boot_->edits);
   service_->asked_by("tester", 1);

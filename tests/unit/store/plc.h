@@ -49,6 +49,7 @@ class Plc : public vm::Boundary {
   // The keys that the next boot() starts it with; none at first.
   std::function<std::unique_ptr<stvm::Trust>(online_change::Store&)> make_trust;
   int64_t wall_ns = 2;  // since 1970
+  uint64_t most_upload = base::kMaxImageBytes;  // of the next boot()
   // Called behind each job.
   std::function<void()> behind_job;
   // As in a replay: no cycle comes by itself.
@@ -59,7 +60,7 @@ class Plc : public vm::Boundary {
 
   vm::Controller& controller() { return *controller_; }
   vm::VirtualClock& clock() { return clock_; }
-  stvm::ControllerService& service() { return *service_; }
+  vm::Service& service() { return *service_; }
   online_change::Store& store() { return *store_; }
   // What its field devices say of themselves; there are none at first.
   std::vector<vm::DeviceStatus>& devices() { return io_.devices; }

@@ -47,7 +47,9 @@ TEST_F(Session, AnUploadEndsWithItsConnection) {
 
 TEST_F(Session, AnUploadIsBounded) {
   constexpr uint64_t kMost = 1000;
-  EXPECT_EQ(plc_.service().limit_uploads(kMost), base::kMaxImageBytes);
+  EXPECT_EQ(plc_.most_upload, base::kMaxImageBytes);
+  plc_.most_upload = kMost;
+  ASSERT_TRUE(plc_.boot().ok());
   EXPECT_TRUE(upload(1, 0, kMost).ok());
   const base::Status more = upload(1, kMost, 1);
   ASSERT_FALSE(more.ok());
