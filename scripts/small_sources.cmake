@@ -1,6 +1,7 @@
 # What talks to people and to files is seldom, and so are forces: small rather than fast.
 file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tools/common/*.cc
      ${CMAKE_SOURCE_DIR}/online_change/store/*.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/rename*.cc
+     ${CMAKE_SOURCE_DIR}/ir/bytecode/edge_names.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/embedded*.cc ${CMAKE_SOURCE_DIR}/base/unpack.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/no_program.cc ${CMAKE_SOURCE_DIR}/ir/bytecode/identities.cc
      ${CMAKE_SOURCE_DIR}/ir/bytecode/part_edits.cc ${CMAKE_SOURCE_DIR}/base/pack.cc

@@ -1,14 +1,15 @@
 #include "ir/bytecode/edge_names.h"
 
 #include <string>
-#include <string_view>
-#include <unordered_map>
-#include <unordered_set>
-#include <vector>
+#include <utility>
 
+#include "ir/bytecode/rename_rules.h"
 #include "ir/types/old_names.h"
 
 namespace ir {
+
+constexpr uint32_t kNoMember = RenameRules::kNone;
+using Numbers = RenameRules::Numbers;
 
 std::string_view edge_of_name(std::string_view name) {
   if (name.find('#') == name.npos) return {};
@@ -38,14 +39,11 @@ uint64_t sum_of_edges(const TypeTable& types) {
     if (type.kind != Kind::kFunctionBlock && type.kind != Kind::kProgram) continue;
     for (const Member& member : type.members) {
       if (edge_of(member).empty()) continue;
-      sum += base::name_hash(type.name + "." + member.name);
+      sum += base::name_hash(type.name) * 31 + base::name_hash(member.name);
     }
   }
   return sum;
 }
-
-// By operand and kind, in their order: what has such a name and `other` does not.
-using Edges = std::unordered_map<std::string, std::vector<uint32_t>>;
 
 }  // namespace
 
@@ -54,40 +52,44 @@ bool edges_differ(const TypeTable& old_types, const TypeTable& types) {
 }
 
 void pair_edges(const Type& old, const TypeTable& types, const Type& next,
-                std::map<uint32_t, uint32_t>& sources) {
-  std::unordered_set<uint32_t> taken;
-  for (const auto& [to, from] : sources) taken.insert(from);
-  std::unordered_map<std::string, uint32_t> before;
+                std::vector<uint32_t>& sources) {
+  std::vector<bool> taken(old.members.size());
+  for (const uint32_t from : sources) {
+    if (from != kNoMember) taken[from] = true;
+  }
+  Numbers before;
   for (uint32_t i = 0; i < old.members.size(); ++i) {
     if (!edge_of(old.members[i]).empty()) before.emplace(fold_name(old.members[i].name), i);
   }
   if (before.empty()) return;
   std::vector<uint32_t> comes;
   for (uint32_t i = 0; i < next.members.size(); ++i) {
-    if (edge_of(next.members[i]).empty() || sources.contains(i)) continue;
+    if (edge_of(next.members[i]).empty() || sources[i] != kNoMember) continue;
     const auto twin = before.find(fold_name(next.members[i].name));
-    if (twin == before.end())
+    if (twin == before.end()) {
       comes.push_back(i);
-    else
-      taken.insert(twin->second);
+    } else {
+      taken[twin->second] = true;
+    }
   }
-  Edges gone;
+  // Of those that are only there, the first one of each operand, and behind it the next one.
+  Numbers gone;
+  std::vector<uint32_t> behind(old.members.size(), kNoMember);
   for (uint32_t i = static_cast<uint32_t>(old.members.size()); i-- > 0;) {
     const std::string_view edge = edge_of(old.members[i]);
-    if (!edge.empty() && !taken.contains(i)) gone[fold_name(edge)].push_back(i);
+    if (edge.empty() || taken[i]) continue;
+    uint32_t& first = gone.emplace(fold_name(edge), kNoMember).first->second;
+    behind[i] = std::exchange(first, i);
   }
   for (const uint32_t to : comes) {
     const Member& member = next.members[to];
-    std::vector<std::string_view> names{member.name};
-    if (member.old_name.valid()) {
-      for (std::string_view name : old_names_of(types.old_name(member.old_name)))
-        names.push_back(name);
-    }
+    std::vector<std::string_view> names;
+    if (member.old_name.valid()) names = old_names_of(types.old_name(member.old_name));
+    names.insert(names.begin(), member.name);
     for (const std::string_view name : names) {
       const auto found = gone.find(fold_name(edge_of_name(name)));
-      if (found == gone.end() || found->second.empty()) continue;
-      sources[to] = found->second.back();
-      found->second.pop_back();
+      if (found == gone.end() || found->second == kNoMember) continue;
+      sources[to] = std::exchange(found->second, behind[found->second]);
       break;
     }
   }

@@ -5,8 +5,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string_view>
+#include <vector>
 
 #include "ir/types/types.h"
 
@@ -19,9 +19,10 @@ std::string_view edge_of_name(std::string_view name);
 // Cost: each name of a member of a POU.
 bool edges_differ(const TypeTable& old_types, const TypeTable& types);
 
-// Adds to `sources`, new member -> old one of `old` and `next` by number: each edge that is known
-// by its name in one version only goes on as one of the same operand, in their order.
+// Adds to `sources`, for each member of `next` the one of `old` that it was (RenameRules::kNone):
+// each edge that is known by its name in one version only goes on as one of the same operand, in
+// their order.
 void pair_edges(const Type& old, const TypeTable& types, const Type& next,
-                std::map<uint32_t, uint32_t>& sources);
+                std::vector<uint32_t>& sources);
 
 }  // namespace ir

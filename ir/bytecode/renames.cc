@@ -1,7 +1,6 @@
 #include "ir/bytecode/renames.h"
 
 #include <algorithm>
-#include <map>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -145,7 +144,7 @@ class Renamer {
       const OldNameId rule = members[i].old_name;
       if (rule.valid()) rules.add(members[i].name, types_.old_name(rule), i);
     }
-    std::map<uint32_t, uint32_t> sources;  // new member -> old one
+    std::vector<uint32_t> sources(members.size(), kNone);  // by new member, the old one
     const std::vector<Member>& before = old_.types[old].members;
     if (!rules.empty()) {
       Numbers numbers;
@@ -155,24 +154,27 @@ class Renamer {
           [&](uint32_t from, uint32_t to) { sources[to] = from; });
     }
     if (edges_) pair_edges(old_.types[old], types_, types_[next], sources);
-    for (const auto& [to, from] : sources) member_names_.push_back({old, from, members[to].name});
+    for (uint32_t i = 0; i < members.size(); ++i) {
+      if (sources[i] != kNone) member_names_.push_back({old, sources[i], members[i].name});
+    }
     pair_members(old, next, sources, depth);
   }
 
   // What has no name of its own is known by the variable that it is the type of.
-  void pair_members(TypeId old, TypeId next, const std::map<uint32_t, uint32_t>& sources,
-                    uint32_t depth) {
+  void pair_members(TypeId old, TypeId next, const std::vector<uint32_t>& sources, uint32_t depth) {
     const std::vector<Member>& members = types_[next].members;
     MemberFinder finder(old_.types, old);
-    std::unordered_set<size_t> renamed;
-    for (const auto& [to, from] : sources) renamed.insert(from);
+    std::vector<bool> renamed(old_.types[old].members.size());
+    for (const uint32_t from : sources) {
+      if (from != kNone) renamed[from] = true;
+    }
     for (uint32_t i = 0; i < members.size(); ++i) {
       const TypeId inner = innermost(types_, members[i].type);
       if (!has_names(types_[inner].kind) || !types_[inner].name.empty()) continue;
-      const auto source = sources.find(i);
+      const bool is_renamed = sources[i] != kNone;
       const std::optional<size_t> twin =
-          source != sources.end() ? source->second : finder.find(members[i].name);
-      if (!twin || (source == sources.end() && renamed.contains(*twin))) continue;
+          is_renamed ? std::optional<size_t>(sources[i]) : finder.find(members[i].name);
+      if (!twin || (!is_renamed && renamed[*twin])) continue;
       const TypeId before = innermost(old_.types, old_.types[old].members[*twin].type);
       const bool same = old_.types[before].kind == types_[inner].kind;
       if (same && old_.types[before].name.empty()) pair(before, inner, depth + 1);
