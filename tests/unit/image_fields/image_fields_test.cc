@@ -1,6 +1,7 @@
-// Every field of the stored form of images has a rule of the verifier that bounds it, or a reason why
-// any value of it is harmless (fields.def). The fields are those that the archives of images go
-// through (tests/fuzz/image_walk.h), so one that is added to the format has no row and fails here.
+// Every field of the stored form of images, and every list of records, has a rule of the verifier
+// that bounds it, or a reason why any value of it is harmless (fields.def). The fields are those
+// that the archives of images go through (tests/fuzz/image_walk.h), so one that is added to the
+// format has no row and fails here.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -18,7 +19,7 @@ using fuzz::FieldPlace;
 using fuzz::ImageField;
 
 enum class Bound : uint8_t {
-  kAlways,  // in every record each value that is far off is refused
+  kAlways,  // in every record each value that is far off is refused; an empty record more in a list
   kRule,    // where it has a meaning, what it may be follows from other fields
   kFree,    // nobody minds any value
 };
@@ -46,9 +47,23 @@ const std::vector<Row>& rows() {
    Bound::kFree,                                       \
    base::Refusal::kInternal,                           \
    why},
+#define LIST(record, bound, refusal, why)  \
+  {{typeid(ir::record), FieldPlace::kList}, \
+   "list of " #record,                      \
+   Bound::bound,                            \
+   base::Refusal::refusal,                  \
+   why},
+#define FREE_LIST(record, why)              \
+  {{typeid(ir::record), FieldPlace::kList}, \
+   "list of " #record,                      \
+   Bound::kFree,                            \
+   base::Refusal::kInternal,                \
+   why},
 #include "tests/unit/image_fields/fields.def"
 #undef FIELD
 #undef FREE
+#undef LIST
+#undef FREE_LIST
   };
   return all;
 }
@@ -61,7 +76,8 @@ const Row* row_of(const FieldPlace& place) {
 }
 
 // How a field is changed, as fuzz::apply() has it: to the ends of what a number can be, to what is
-// near, texts and lists in all ways. The first kFar of them are where no image comes near.
+// near, texts and lists in all ways. The first kFar of them are where no image comes near; to a
+// list of records they add one.
 std::vector<FieldChange> changes(uint16_t field, uint16_t which) {
   std::vector<FieldChange> all;
   for (const uint16_t end : {3, 4, 6, 7, 0, 1, 2, 5}) all.emplace_back(field, which, end, 12);
@@ -130,10 +146,11 @@ TEST(ImageFields, EachHasARuleOrAReason) {
   std::vector<bool> seen(rows().size());
   for (uint16_t number = 0; number < fields.size(); ++number) {
     const FieldPlace& place = fields[number].place;
-    if (place.offset == FieldPlace::kList) continue;
     const Row* const row = row_of(place);
-    ASSERT_NE(row, nullptr) << "the format has a field without a row in fields.def: "
-                            << place.record.name() << ", at byte " << place.offset;
+    ASSERT_NE(row, nullptr) << "the format has a "
+                            << (place.offset == FieldPlace::kList ? "list" : "field")
+                            << " without a row in fields.def: " << place.record.name()
+                            << ", at byte " << static_cast<ptrdiff_t>(place.offset);
     seen[static_cast<size_t>(row - rows().data())] = true;
     expect_promise(*row, ask(version, **known, fields, number));
   }
