@@ -32,7 +32,8 @@ struct PouEdit {
 
 // By name, then the removed ones, then those that follow. Linear in the POUs of both versions.
 std::vector<PouEdit> pou_edits(const ir::Image& old_image, const ir::Image& new_image);
-// The same result, sooner where types are as they were.
+// The same result, sooner where types are as they were; no two POUs of a version have one name, as
+// linkers make them.
 std::vector<PouEdit> pou_edits(const EncodedImage& old_version, const EncodedImage& new_version);
 // D7: kInterfaceEdit when a POU that stays gets another interface.
 base::Status check_restricted(const std::vector<PouEdit>& edits);

@@ -30,19 +30,28 @@ constexpr const char* kFiles[] = {"golden/change/migration.st",
                                   "fuzz/every_table.st"};
 static_assert(std::size(kFiles) == kEveryTable + 1);
 
-ir::Image linked(const std::string& text, const ir::Image* base) {
+struct Compiled {
+  ir::Program program;
+  std::vector<ir::Object> objects;
+};
+
+Compiled compiled(const std::string& text) {
   base::SourceMap sources;
   sources.add("fuzz.st", text);
   base::Diagnostics diagnostics;
   std::optional<ir::Program> program = frontend::compile(sources, {}, diagnostics);
   base::check(program.has_value(), "a version of a golden file compiles");
-  std::vector<ir::Object> objects;
-  for (uint32_t i = 0; i < program->pous.size(); ++i) {
-    objects.push_back(*ir::lower(*program, ir::PouId(i)));
+  Compiled out{std::move(*program), {}};
+  for (uint32_t i = 0; i < out.program.pous.size(); ++i) {
+    out.objects.push_back(*ir::lower(out.program, ir::PouId(i)));
   }
+  return out;
+}
+
+base::Result<ir::Image> linked(const Compiled& from, const ir::Image* base) {
   linker::Options options;
   options.base = base;
-  return *linker::link(*program, objects, options);
+  return linker::link(from.program, from.objects, options);
 }
 
 ir::Device simulated_device(ir::Image& image) {
@@ -69,22 +78,31 @@ void add_settings(ir::Image& image) {
 }
 
 ir::VerifiedImage version(const std::string& text, const ir::Image* base, bool settings) {
-  ir::Image image = linked(text, base);
+  ir::Image image = *linked(compiled(text), base);
   if (settings) add_settings(image);
   base::Result<ir::VerifiedImage> verified = ir::verify(ir::encode(image));
   base::check(verified.ok(), "a version of a golden file is sound");
   return *verified;
 }
 
-Versions make(size_t number) {
+struct Texts {
+  std::string from, to;
+};
+
+Texts texts(size_t number) {
   std::ifstream in(tests::source_path("tests/" + std::string(kFiles[number])));
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   const size_t second = text.find("// --- v2");
   base::check(second != std::string::npos, "a golden file of two versions");
   const size_t third = std::min(text.find("// --- v3"), text.find("// > "));
+  return {text.substr(0, second), text.substr(second, third - second)};
+}
+
+Versions make(size_t number) {
+  const Texts text = texts(number);
   const bool settings = number == kEveryTable;
-  ir::VerifiedImage from = version(text.substr(0, second), nullptr, settings);
-  ir::VerifiedImage to = version(text.substr(second, third - second), &from.image(), settings);
+  ir::VerifiedImage from = version(text.from, nullptr, settings);
+  ir::VerifiedImage to = version(text.to, &from.image(), settings);
   base::Result<online_change::Package> package =
       online_change::make_package(from.encoded(), to.encoded());
   base::check(package.ok(), "a golden file's change can be made");
@@ -98,6 +116,13 @@ const Versions& versions(uint8_t number) {
   std::optional<Versions>& pair = all[number % std::size(kFiles)];
   if (!pair) pair = make(number % std::size(kFiles));
   return *pair;
+}
+
+base::Result<ir::Image> second_on(uint8_t number, const ir::Image& base) {
+  static std::optional<Compiled> all[std::size(kFiles)];
+  std::optional<Compiled>& second = all[number % std::size(kFiles)];
+  if (!second) second = compiled(texts(number % std::size(kFiles)).to);
+  return linked(*second, &base);
 }
 
 }  // namespace fuzz

@@ -17,6 +17,8 @@ struct Versions {
 
 // By number, modulo how many there are; made when first asked for.
 const Versions& versions(uint8_t number);
+// The sources of the second version, linked on top of that image, which is verified.
+base::Result<ir::Image> second_on(uint8_t number, const ir::Image& base);
 // The versions that fill every table: with devices, safe outputs and shared globals.
 inline constexpr uint8_t kEveryTable = 13;
 
