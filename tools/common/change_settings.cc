@@ -5,9 +5,22 @@
 #include "ir/bytecode/image.h"
 #include "online_change/package/fleet_file.h"
 #include "tools/common/files.h"
-#include "tools/common/project_file.h"
 
 namespace tools {
+
+void take_change_settings(const ProjectFile& file, ChangeSettings& settings) {
+  std::string strategy;
+  file.take<std::string>("change.strategy", strategy);
+  if (strategy == "in-place" || strategy == "standby") settings.strategy = strategy;
+  file.take<bool>("change.restricted", settings.restricted);
+  file.take<std::string>("change.health", settings.health);
+  file.take<std::string>("change.unless", settings.unless);
+  std::string boots;
+  file.take<std::string>("change.boots", boots);
+  if (!boots.empty()) settings.last_edit = boots == "last-edit";
+  file.take<int64_t>("change.data_limit", settings.data_limit);
+  file.take<int64_t>("slack.code_percent", settings.code_slack_percent);
+}
 
 base::Result<ChangeSettings> change_settings(const std::vector<std::string>& paths) {
   ChangeSettings settings;
@@ -29,17 +42,7 @@ base::Result<ChangeSettings> change_settings(const std::vector<std::string>& pat
     if (nearest.empty() || !read.insert(nearest).second) continue;
     base::Result<ProjectFile> file = read_project_file(nearest);
     if (!file.ok()) return file.error();
-    std::string strategy;
-    file->take<std::string>("change.strategy", strategy);
-    if (strategy == "in-place" || strategy == "standby") settings.strategy = strategy;
-    file->take<bool>("change.restricted", settings.restricted);
-    file->take<std::string>("change.health", settings.health);
-    file->take<std::string>("change.unless", settings.unless);
-    std::string boots;
-    file->take<std::string>("change.boots", boots);
-    if (!boots.empty()) settings.last_edit = boots == "last-edit";
-    file->take<int64_t>("change.data_limit", settings.data_limit);
-    file->take<int64_t>("slack.code_percent", settings.code_slack_percent);
+    take_change_settings(*file, settings);
   }
   return settings;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "tools/common/project_file.h"
 
 namespace tools {
 
@@ -20,6 +21,8 @@ struct ChangeSettings {
   bool table_additions = false;  // of a fleet file whose table is restricted (E-16)
 };
 
+// What the file says, over what is in `settings`.
+void take_change_settings(const ProjectFile& file, ChangeSettings& settings);
 // From the stc.toml that is nearest to each path but images; the defaults without one. Whether they
 // are right is said by stc, which compiles what the paths name.
 base::Result<ChangeSettings> change_settings(const std::vector<std::string>& paths);

@@ -40,10 +40,14 @@ base::Status check_texts(const std::string& path, const TomlTable& table) {
 base::Result<ProjectFile> read_project_file(const std::string& path) {
   base::Result<std::string> text = read_text(path);
   if (!text.ok()) return text.error();
-  base::Result<TomlTable> table = parse_toml(path, *text);
+  return parse_project_file(path, std::move(*text));
+}
+
+base::Result<ProjectFile> parse_project_file(const std::string& path, std::string text) {
+  base::Result<TomlTable> table = parse_toml(path, text);
   if (!table.ok()) return table.error();
   if (base::Status texts = check_texts(path, *table); !texts.ok()) return texts.error();
-  return ProjectFile{path, std::move(*text), std::move(*table)};
+  return ProjectFile{path, std::move(text), std::move(*table)};
 }
 
 std::string nearest_project_file(const std::string& path) {

@@ -49,8 +49,11 @@ struct ProjectFile {
 
 // kBadProject with line and column for what is no TOML; errors of read_text(), too.
 base::Result<ProjectFile> read_project_file(const std::string& path);
-// Reads the file and refuses unknown keys and wrong values; tables [devices.NAME] and [units] are
-// not looked into.
+// The same of a file that was read already.
+base::Result<ProjectFile> parse_project_file(const std::string& path, std::string text);
+// Refuses unknown keys and wrong values; tables [devices.NAME] and [units] are not looked into.
+base::Status check_project_keys(const ProjectFile& file);
+// Reads the file and checks its keys.
 base::Result<ProjectFile> read_checked_project_file(const std::string& path);
 
 // Why `code` cannot have a level in [warnings] or after --warn; "": it can.

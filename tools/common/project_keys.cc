@@ -139,13 +139,18 @@ std::string warning_code_fault(std::string_view code) {
   return base::joined({"`", code, "` is an error; only warnings and notes have a level"});
 }
 
+base::Status check_project_keys(const ProjectFile& file) {
+  for (const auto& [name, value] : file.table) {
+    if (name.starts_with(kDeviceTables) || name.starts_with(kUnitTable)) continue;
+    if (base::Status known = check_key(file.path, name, value); !known.ok()) return known;
+  }
+  return base::Ok{};
+}
+
 base::Result<ProjectFile> read_checked_project_file(const std::string& path) {
   base::Result<ProjectFile> file = read_project_file(path);
   if (!file.ok()) return file;
-  for (const auto& [name, value] : file->table) {
-    if (name.starts_with(kDeviceTables) || name.starts_with(kUnitTable)) continue;
-    if (base::Status known = check_key(path, name, value); !known.ok()) return known.error();
-  }
+  if (base::Status known = check_project_keys(*file); !known.ok()) return known.error();
   return file;
 }
 

@@ -21,19 +21,23 @@ constexpr std::pair<const char*, bool Options::*> kSwitches[] = {
 
 }  // namespace
 
-base::Result<frontend::FormatOptions> format_settings(const std::string& path) {
+frontend::FormatOptions format_options(const tools::ProjectFile& file) {
   Options options;
-  const std::string nearest = tools::nearest_project_file(path);
-  if (nearest.empty()) return options;
-  base::Result<tools::ProjectFile> file = tools::read_checked_project_file(nearest);
-  if (!file.ok()) return file.error();
-  for (const auto& [key, member] : kNumbers) file->take<int64_t>(key, options.*member);
-  for (const auto& [key, member] : kSwitches) file->take<bool>(key, options.*member);
+  for (const auto& [key, member] : kNumbers) file.take<int64_t>(key, options.*member);
+  for (const auto& [key, member] : kSwitches) file.take<bool>(key, options.*member);
   std::string keyword_case;
-  if (file->take<std::string>("format.keyword_case", keyword_case)) {
+  if (file.take<std::string>("format.keyword_case", keyword_case)) {
     options.upper_keywords = keyword_case == "upper";
   }
   return options;
+}
+
+base::Result<frontend::FormatOptions> format_settings(const std::string& path) {
+  const std::string nearest = tools::nearest_project_file(path);
+  if (nearest.empty()) return Options();
+  base::Result<tools::ProjectFile> file = tools::read_checked_project_file(nearest);
+  if (!file.ok()) return file.error();
+  return format_options(*file);
 }
 
 }  // namespace stc

@@ -10,21 +10,7 @@
 #include "tools/common/files.h"
 
 namespace stc {
-
 namespace {
-
-void set_values(std::string_view lines, frontend::draw::Live& live) {
-  while (!lines.empty()) {
-    size_t end = std::min(lines.find('\n'), lines.size());
-    std::string_view line = lines.substr(0, end);
-    lines.remove_prefix(std::min(end + 1, lines.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    size_t sign = line.find('=');
-    if (sign != std::string_view::npos) {
-      live.set(line.substr(0, sign), std::string(line.substr(sign + 1)));
-    }
-  }
-}
 
 // What `stvm get` prints.
 base::Result<std::string> get(const std::string& place, std::vector<std::string> arguments) {
@@ -48,6 +34,19 @@ base::Result<std::string> get(const std::string& place, std::vector<std::string>
 }
 
 }  // namespace
+
+void set_values(std::string_view lines, frontend::draw::Live& live) {
+  while (!lines.empty()) {
+    size_t end = std::min(lines.find('\n'), lines.size());
+    std::string_view line = lines.substr(0, end);
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    size_t sign = line.find('=');
+    if (sign != std::string_view::npos) {
+      live.set(line.substr(0, sign), std::string(line.substr(sign + 1)));
+    }
+  }
+}
 
 base::Status fetch_values(const std::string& place, const std::vector<std::string>& names,
                           frontend::draw::Live& live) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -14,7 +15,9 @@ namespace stc {
 base::Status fetch_values(const std::string& place, const std::vector<std::string>& names,
                           frontend::draw::Live& live);
 
-// `NAME=VALUE` a line, as `stvm get` and `stvm run --print` write them.
+// `NAME=VALUE` a line, as `stvm get` and `stvm run --print` write them; other lines say nothing.
+void set_values(std::string_view lines, frontend::draw::Live& live);
+// Those of a file.
 base::Status read_values(const std::string& file, frontend::draw::Live& live);
 
 }  // namespace stc
