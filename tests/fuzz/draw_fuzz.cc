@@ -1,5 +1,6 @@
 // Parser, writers and pictures over arbitrary bytes: whatever diagrams and charts come out of a
-// text, they can be written as text and drawn, with values and without.
+// text, they can be written as text and drawn, with values and without. What follows a line
+// `(* values *)` is a file of values, as `stc draw --values` takes it.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,6 +12,7 @@
 #include "frontend/network/same.h"
 #include "frontend/network/write.h"
 #include "frontend/parse/parse.h"
+#include "tools/stc/live_values.h"
 
 namespace {
 
@@ -30,13 +32,17 @@ void check_text(const network::Body& body) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  constexpr std::string_view kValues = "(* values *)\n";
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const size_t values_at = text.find(kValues);
   base::SourceMap sources;
-  sources.add("fuzz.st", std::string(reinterpret_cast<const char*>(data), size));
+  sources.add("fuzz.st", std::string(text.substr(0, values_at)));
   base::Diagnostics diagnostics;
   Tree tree;
   parse(sources, 0, tree, diagnostics);
   draw::Live live("p");
   for (const char* name : {"a", "b", "Start", "S1.X", "t.Q"}) live.set(name, "TRUE");
+  if (values_at != text.npos) stc::set_values(text.substr(values_at + kValues.size()), live);
   for (const network::Body& body : tree.diagrams) {
     check_text(body);
     for (const draw::Live* values :

@@ -2,7 +2,8 @@
 // that answers what it likes.
 //
 // An input is {what, bytes}: a request, the answer of each request of one call, the conditions of a
-// trial (X6-03) as a tool sends them, one as people write it, or the file of a plan (X6-02).
+// trial (X6-03) as a tool sends them, one as people write it, the file of a plan (X6-02), the body
+// of one answer, or what `stvm change --watch` and the stc that it starts say to each other.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "tools/common/followed_change.h"
 #include "tools/stvm/condition_parse.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/event_text.h"
@@ -42,6 +44,34 @@ void ask_everything(base::ByteSpan answer) {
   (void)client.fates().ok();
   (void)client.image_before().ok();
   (void)client.task_times("T").ok();
+  (void)client.facts().ok();
+  (void)client.every_fate().ok();
+  (void)client.stage({}, 0).ok();
+  (void)client.make_switch(0).ok();
+  (void)client.undo().ok();
+}
+
+// Messages grow at their ends, so what is read is written as this version has it.
+template <class T, class Decode>
+void check_body(const base::Result<T>& body, Decode&& decode) {
+  using stvm::encode;  // of a report, too
+  using vm::encode;
+  if (!body.ok()) return base::check(!body.error().text.empty(), "a reason");
+  const base::Bytes once = encode(*body);
+  const auto again = decode(base::ByteSpan(once));
+  base::check(again.ok() && encode(*again) == once, "a body is written as it was read");
+}
+
+void check_bodies(base::ByteSpan bytes) {
+  check_body(stvm::decode_switch_report(bytes), stvm::decode_switch_report);
+  check_body(vm::decode_abort_answer(bytes), vm::decode_abort_answer);
+  check_body(vm::decode_staged_answer(bytes), vm::decode_staged_answer);
+}
+
+template <class T>
+void check_followed(const base::Result<T>& message, base::ByteSpan bytes) {
+  if (!message.ok()) return base::check(!message.error().text.empty(), "a reason");
+  base::check(std::ranges::equal(encode(*message), bytes), "a message is exact");
 }
 
 void check_request(base::ByteSpan bytes) {
@@ -110,7 +140,7 @@ void check_plan(base::ByteSpan bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   const base::ByteSpan input(data + 1, size - 1);
-  switch (data[0] % 6) {
+  switch (data[0] % 8) {
     case 0:
       check_request(input);
       break;
@@ -126,8 +156,15 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     case 4:
       check_written(input);
       break;
-    default:
+    case 5:
       check_plan(input);
+      break;
+    case 6:
+      check_bodies(input);
+      break;
+    default:
+      check_followed(tools::decode_followed_change(input), input);
+      check_followed(tools::decode_followed_answer(input), input);
   }
   return 0;
 }

@@ -1,11 +1,13 @@
-// Signed files, lists of revoked keys, the stored record of them, and what agents are told and say:
-// decoded or refused with a reason; what is decoded is written as it was.
+// Signed files, lists of revoked keys, the stored record of them, and what agents are told, say and
+// remember: decoded or refused with a reason; what is decoded is written as it was.
 #include <algorithm>
 
 #include "base/check.h"
 #include "online_change/package/signed_file.h"
 #include "online_change/store/trust_record.h"
 #include "tools/stvm/agent_answer.h"
+#include "tools/stvm/agent_memory.h"
+#include "tools/stvm/memory_storage.h"
 
 namespace {
 
@@ -41,12 +43,41 @@ void check_agents(base::ByteSpan bytes) {
   check_twice(stvm::decode_agent_answer(bytes), stvm::decode_agent_answer);
 }
 
+constexpr const char* kMemoryFile = "order";
+
+void store(vm::Storage& storage, base::ByteSpan bytes) {
+  const vm::Storage::Piece pieces[] = {{0, bytes}};
+  base::check(storage.replace(kMemoryFile, bytes.size(), pieces).ok(), "it is stored");
+}
+
+// The file of an agent's memory, and the content of one whose hash is right.
+void check_memory(base::ByteSpan bytes) {
+  base::ByteWriter right;
+  right.raw(base::sha256(bytes));
+  right.u64(bytes.size());
+  right.raw(bytes);
+  for (const base::ByteSpan file : {bytes, base::ByteSpan(right.bytes())}) {
+    stvm::MemoryStorage storage;
+    store(storage, file);
+    stvm::AgentMemory memory(storage);
+    memory.read();
+    const base::Bytes order = memory.order();
+    const base::Bytes answer = memory.answer();
+    if (order.empty()) continue;
+    base::check(memory.begin(order).ok() && memory.end(answer).ok(), "it is stored");
+    stvm::AgentMemory again(storage);
+    again.read();
+    base::check(again.order() == order && again.answer() == answer, "it is remembered");
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const base::ByteSpan bytes(data, size);
   check_stored(bytes);
   check_agents(bytes);
+  check_memory(bytes);
   base::Bytes content(bytes.begin(), bytes.end());
   const auto file = online_change::open_signed(content);
   if (!file.ok()) {

@@ -1,12 +1,17 @@
-// Texts in the subset of TOML: stc.toml with its devices and units, trust files, lists of fleets
+// Texts in the subset of TOML: stc.toml with all its tables, trust files, lists of fleets
 // with waves and broker, and the stored plan of a roll-out. Read, or refused with a place in the
 // text; what is written again is read as it was.
 #include <algorithm>
 
 #include "base/check.h"
+#include "tools/common/change_settings.h"
 #include "tools/common/trust_file.h"
+#include "tools/stc/defines.h"
 #include "tools/stc/device_tables.h"
+#include "tools/stc/format_settings.h"
+#include "tools/stc/safe_settings.h"
 #include "tools/stc/unit_settings.h"
+#include "tools/stc/warning_settings.h"
 #include "tools/stvm/fleet_broker.h"
 #include "tools/stvm/fleet_plan.h"
 
@@ -50,12 +55,45 @@ void check_keys(const Size& size, const tools::TomlTable& table) {
   }
 }
 
+// Settings that have a meaning wherever they are: those of warnings, layout, changes, safe outputs.
+void read_settings(const tools::ProjectFile& file) {
+  base::WarningPolicy policy;
+  stc::apply_warning_table(file, policy);
+  (void)stc::format_options(file);
+  tools::ChangeSettings change;
+  tools::take_change_settings(file, change);
+  base::check(
+      change.strategy.empty() || change.strategy == "in-place" || change.strategy == "standby",
+      "a strategy");
+  if (const tools::TomlValue* const defines = file.find("defines")) {
+    const auto& texts = std::get<std::vector<std::string>>(defines->data);
+    if (const auto mistake = stc::mistake_in(texts)) {
+      base::check(mistake->number < texts.size() && !mistake->what.empty(), "a define");
+    }
+  }
+  const tools::TomlValue* const safe = file.find("outputs.safe");
+  if (safe == nullptr) return;
+  const auto settings = stc::parse_safe_settings(kName, *safe);
+  if (!settings.ok()) return check_error(settings.error());
+  for (const uint32_t bytes : {0u, 4u, 1u << 20}) {
+    const auto inside = stc::safe_rows_inside(*settings, bytes);
+    const bool all = stc::check_safe_settings(*settings, bytes).ok();
+    base::check(all == (inside.size() == settings->rows.size()), "rows inside of the outputs");
+  }
+}
+
 void read_project(std::string_view text, const tools::TomlTable& table) {
   if (const auto devices = stc::read_devices(kName, table); !devices.ok()) {
     check_error(devices.error());
   }
   const auto units = stc::parse_unit_settings({kName, std::string(text), table});
   if (!units.ok()) check_error(units.error());
+  const auto file = tools::parse_project_file(kName, std::string(text));
+  if (!file.ok()) return check_error(file.error());
+  if (const base::Status keys = tools::check_project_keys(*file); !keys.ok()) {
+    return check_error(keys.error());
+  }
+  read_settings(*file);
 }
 
 void read_fleet(const std::string& text, const tools::TomlTable& table) {
