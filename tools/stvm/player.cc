@@ -20,6 +20,10 @@ base::Status Player::start() {
   if (!start.retained.empty() && start.retained.size() != retained) {
     return unusable("its retained values are of another program");
   }
+  // Else a loop in the program could be one without an end.
+  if (start.fuel_budget > vm::ControllerOptions().fuel_budget) {
+    return unusable("its scans have more fuel than a controller gives them");
+  }
   if (recording_.cycles.empty()) return unusable("it ends before the program had started");
   base::Status started = start_controller(*image);
   if (started.ok()) started = start_service(*image, retained);
