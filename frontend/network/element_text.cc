@@ -300,7 +300,16 @@ std::string comment_rows(std::string_view comment, uint32_t indent) {
     if (comment.empty()) return "(* *)";
     return "(* " + with_lines(comment, margin + "   ") + " *)";
   }
-  return "// " + with_lines(comment, margin + "// ");
+  if (comment.find('\n') == std::string_view::npos) return "// " + with_lines(comment, {});
+  // Each line by itself, as it is when it is read again.
+  std::string out;
+  while (!comment.empty()) {
+    const size_t end = std::min(comment.find('\n'), comment.size());
+    const std::string_view line = comment.substr(0, end);
+    comment.remove_prefix(std::min(end + 1, comment.size()));
+    out += (out.empty() ? "" : "\n" + margin) + comment_rows(line, indent);
+  }
+  return out;
 }
 
 bool is_one_diagram(Language language, std::string_view rows) {
