@@ -20,6 +20,7 @@
 #include "tests/fuzz/answered.h"
 #include "tools/common/all_system_edits.h"
 #include "tools/common/fate_report.h"
+#include "tools/common/fleet_parts.h"
 #include "tools/common/json.h"
 #include "tools/common/source_edits.h"
 #include "tools/stc/addresses_text.h"
@@ -78,6 +79,9 @@ void compare_tables(const ir::Image& from, const ir::Image& to) {
   }
   answered(check_own_limits(from, to));
   answered(check_limits(online_limits().front(), from, to));
+  const auto parts = linker::merge_parts({from, to, from});
+  tools::part_edits_text(parts, false);
+  tools::part_edits_text(parts, true);
   const stvm::FleetDifference difference = stvm::fleet_difference(from, to);
   base::check(!stvm::difference_text(difference).empty(), "a difference as text");
   tools::JsonWriter json;

@@ -7,6 +7,7 @@
 #include "online_change/store/retained_values.h"
 #include "tests/fuzz/answered.h"
 #include "tests/fuzz/consumers.h"
+#include "tools/stvm/plot.h"
 #include "vm/io/device_io.h"
 #include "vm/io/global_exchange.h"
 #include "vm/io/simulated_driver.h"
@@ -50,6 +51,23 @@ std::vector<vm::NamedValue> some_values(const ir::Image& image, const vm::Contro
     if (answered(value)) values.push_back({path, *value});
   });
   return values;
+}
+
+// A picture of the run; of what cannot be drawn there is none.
+void plot(Plant& plant) {
+  vm::Controller& controller = *plant.controller;
+  std::vector<std::string> names;
+  for (const vm::NamedValue& value : some_values(controller.image(), controller)) {
+    if (stvm::Plot::of(controller, {value.path}).ok()) names.push_back(value.path);
+  }
+  if (names.empty()) return;
+  auto drawn = stvm::Plot::of(controller, names);
+  base::check(drawn.ok(), "what can be drawn alone is drawn beside others");
+  for (int i = 0; i < kScans; ++i) {
+    controller.cycle();
+    drawn->sample(controller);
+  }
+  base::check(drawn->svg(controller.image().name).ends_with("</svg>\n"), "a whole picture");
 }
 
 void set_and_force(Plant& plant) {
@@ -97,6 +115,7 @@ void run_image(const ir::VerifiedImage& image) {
   look_at(*plant.controller);
   set_and_force(plant);
   set_and_force(native);
+  plot(plant);
   for (const vm::Restart kind : {vm::Restart::kCold, vm::Restart::kWarm, vm::Restart::kHot}) {
     answered(plant.controller->restart(kind, 1'000'000));
     plant.run();
