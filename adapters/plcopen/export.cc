@@ -9,6 +9,7 @@
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/writer.h"
 #include "base/name_case.h"
+#include "frontend/parse/global_lists.h"
 
 namespace plcopen {
 
@@ -24,10 +25,11 @@ std::optional<Edition> form_of_name(std::string_view name) {
   return std::nullopt;
 }
 
-// Global blocks of one file and name are one list.
 std::vector<Writer::Globals> Writer::global_lists() {
   std::vector<Globals> out;
-  for (const VarBlock& block : tree_.globals) {
+  const std::vector<const VarBlock*> heads = frontend::list_heads(tree_, in_.sources);
+  for (size_t i = 0; i < heads.size(); ++i) {
+    const VarBlock& block = tree_.globals[i];
     if (block.section != VarSection::kGlobal) {
       fail(block.span, "VAR_CONFIG outside of a CONFIGURATION has no element in PLCopen XML");
       continue;
@@ -36,26 +38,21 @@ std::vector<Writer::Globals> Writer::global_lists() {
       fail(block.span, "a NAMESPACE has no element in PLCopen XML");
       continue;
     }
-    const frontend::Attribute* named = tree_.find_attribute(block.attributes, "list");
-    std::string_view file = in_.sources.file_name(in_.sources.file_of(block.span.begin));
-    file.remove_prefix(file.find_last_of("/\\") + 1);
+    const std::string name(frontend::list_name(tree_, in_.sources, *heads[i]));
+    const frontend::Attribute* named = tree_.find_attribute(heads[i]->attributes, "list");
     const bool own = named != nullptr && !named->value.empty();
-    out.push_back(
-        {own ? std::string(named->value) : xml::as_name(file.substr(0, file.find('.'))), {&block}});
+    out.push_back({own ? name : xml::as_name(name), &block, heads[i]->attributes});
   }
   return out;
 }
 
 void Writer::put_global_list(Node parent, const Globals& list) {
-  for (const VarBlock* block : list.blocks) {
-    const Node last = parent.last_child();
-    const bool whole = put_list(parent, *block, list.name);
-    if (parent.last_child() != last) tag(parent.last_child(), block->span.begin);
-    if (whole) continue;
-    fail(block->span,
-         "this list of global variables has something that PLCopen XML has no element "
-         "for");
-  }
+  const Node last = parent.last_child();
+  const bool whole = put_list(parent, *list.block, list.name, list.attributes);
+  if (parent.last_child() != last) tag(parent.last_child(), list.block->span.begin);
+  if (whole) return;
+  fail(list.block->span,
+       "this list of global variables has something that PLCopen XML has no element for");
 }
 
 void Writer::resource(Node parent, const ResourceDecl& resource,
@@ -77,7 +74,7 @@ void Writer::resource(Node parent, const ResourceDecl& resource,
     put_attributes(each, task.attributes);
     tasks.push_back(each);
   }
-  for (const VarBlock& block : resource.globals) put_list(node, block, {});
+  for (const VarBlock& block : resource.globals) put_list(node, block, {}, block.attributes);
   for (const Globals& list : lists) put_global_list(node, list);
   for (const frontend::ProgramDecl& program : resource.programs) {
     if (program.args.count != 0 || !program.block_tasks.empty()) {
@@ -112,7 +109,7 @@ void Writer::configuration(Node parent, const ConfigDecl& config,
   }
   for (VarSection section : {VarSection::kGlobal, VarSection::kAccess, VarSection::kConfig}) {
     for (const VarBlock& block : config.globals) {
-      if (block.section == section) put_list(node, block, {});
+      if (block.section == section) put_list(node, block, {}, block.attributes);
     }
   }
   put_attributes(node, config.attributes);

@@ -85,7 +85,8 @@ bool Writer::put_variable(Node list, const VarBlock& block, const VarDecl& decl)
   return !edge && !decl.binds && !unnamed;
 }
 
-bool Writer::put_list(Node parent, const VarBlock& block, const std::string& name) {
+bool Writer::put_list(Node parent, const VarBlock& block, const std::string& name,
+                      frontend::Range32 attributes) {
   bool declared = block.vars.empty();
   for (const VarDecl& decl : block.vars) declared = declared || !is_made(decl);
   if (!declared) return true;
@@ -109,7 +110,7 @@ bool Writer::put_list(Node parent, const VarBlock& block, const std::string& nam
   for (const VarDecl& decl : block.vars) {
     if (!is_made(decl)) whole = put_variable(list, block, decl) && whole;
   }
-  put_attributes(list, block.attributes);
+  put_attributes(list, attributes);
   // A list with a name is tagged after this, and its comment is that of the source.
   if (name.empty()) put_documentation(list, comment_before(block.span.begin));
   return whole;
@@ -117,7 +118,8 @@ bool Writer::put_list(Node parent, const VarBlock& block, const std::string& nam
 
 bool Writer::put_lists(Node parent, const std::vector<VarBlock>& blocks) {
   bool whole = true;
-  for (const VarBlock& block : blocks) whole = put_list(parent, block, {}) && whole;
+  for (const VarBlock& block : blocks)
+    whole = put_list(parent, block, {}, block.attributes) && whole;
   return whole;
 }
 

@@ -32,9 +32,10 @@ class Writer {
   using SpecId = frontend::SpecId;
   using ExprId = frontend::ExprId;
 
-  struct Globals {  // a list of global variables: its name and the blocks of it
+  struct Globals {  // a block of global variables, with name and attributes of its list
     std::string name;
-    std::vector<const frontend::VarBlock*> blocks;
+    const frontend::VarBlock* block;
+    frontend::Range32 attributes;
   };
 
   // No element says it: an error, or a warning where the text of the sources does.
@@ -79,7 +80,8 @@ class Writer {
 
   // --- export_variables.cc
   bool put_lists(Node parent, const std::vector<frontend::VarBlock>& blocks);  // false: lossy
-  bool put_list(Node parent, const frontend::VarBlock& block, const std::string& name);
+  bool put_list(Node parent, const frontend::VarBlock& block, const std::string& name,
+                frontend::Range32 attributes);
   bool put_variable(Node list, const frontend::VarBlock& block, const frontend::VarDecl& decl);
 
   // --- export_pou.cc

@@ -2,6 +2,7 @@
 
 #include "base/name_case.h"
 #include "frontend/compile.h"
+#include "frontend/parse/global_lists.h"
 #include "tools/stc/unit_slices.h"
 
 namespace stc {
@@ -15,16 +16,6 @@ std::string scope_prefix(const frontend::Tree& tree, frontend::ScopeId scope) {
   return out;
 }
 
-// As sema names the list of a block (frontend/sema/declarations/global_lists.cc).
-std::string list_prefix(const Project& project, const frontend::Tree& tree,
-                        const frontend::VarBlock& block) {
-  const frontend::Attribute* named = tree.find_attribute(block.attributes, "list");
-  if (named != nullptr && !named->value.empty()) return std::string(named->value) + ".";
-  std::string_view file = project.sources.locate(block.span.begin).file;
-  file.remove_prefix(file.find_last_of("/\\") + 1);
-  return std::string(file.substr(0, file.find('.'))) + ".";
-}
-
 }  // namespace
 
 DeclaredPlaces::DeclaredPlaces(const Project& project) {
@@ -32,7 +23,8 @@ DeclaredPlaces::DeclaredPlaces(const Project& project) {
   base::Diagnostics ignored;  // who built it has reported them
   frontend::parse_all(project.sources, project.compile, tree, ignored);
   for (const frontend::PouDecl& pou : tree.pous) add_pou(pou, scope_prefix(tree, pou.scope));
-  for (const frontend::VarBlock& block : tree.globals) add_block(project, tree, block);
+  const std::vector<const frontend::VarBlock*> heads = frontend::list_heads(tree, project.sources);
+  for (size_t i = 0; i < heads.size(); ++i) add_block(project, tree, tree.globals[i], *heads[i]);
   for (const frontend::ConfigDecl& config : tree.configs) add_config(project, tree, config);
 }
 
@@ -57,9 +49,10 @@ void DeclaredPlaces::add_pou(const frontend::PouDecl& pou, const std::string& pr
 
 // A global goes by its own name, or by that of its namespace or list in front of it.
 void DeclaredPlaces::add_block(const Project& project, const frontend::Tree& tree,
-                               const frontend::VarBlock& block) {
-  const std::string prefixes[] = {scope_prefix(tree, block.scope),
-                                  list_prefix(project, tree, block)};
+                               const frontend::VarBlock& block, const frontend::VarBlock& head) {
+  const std::string prefixes[] = {
+      scope_prefix(tree, block.scope),
+      std::string(frontend::list_name(tree, project.sources, head)) + "."};
   for (const frontend::VarDecl& variable : block.vars) {
     for (const frontend::Name& name : variable.names) {
       for (const std::string& prefix : prefixes) {
@@ -78,9 +71,9 @@ void DeclaredPlaces::add_block(const Project& project, const frontend::Tree& tre
 
 void DeclaredPlaces::add_config(const Project& project, const frontend::Tree& tree,
                                 const frontend::ConfigDecl& config) {
-  for (const frontend::VarBlock& block : config.globals) add_block(project, tree, block);
+  for (const frontend::VarBlock& block : config.globals) add_block(project, tree, block, block);
   for (const frontend::ResourceDecl& resource : config.resources) {
-    for (const frontend::VarBlock& block : resource.globals) add_block(project, tree, block);
+    for (const frontend::VarBlock& block : resource.globals) add_block(project, tree, block, block);
   }
 }
 

@@ -26,7 +26,7 @@ class DeclaredPlaces {
   static base::SourceSpan find(const Places& places, const std::string& name);
   void add_pou(const frontend::PouDecl& pou, const std::string& prefix);
   void add_block(const Project& project, const frontend::Tree& tree,
-                 const frontend::VarBlock& block);
+                 const frontend::VarBlock& block, const frontend::VarBlock& head);
   void add_config(const Project& project, const frontend::Tree& tree,
                   const frontend::ConfigDecl& config);
 

@@ -1,5 +1,6 @@
 // First pass: every name that a declaration brings into the world, nothing resolved.
 #include "frontend/sema/declarations/collection.h"
+#include "frontend/parse/global_lists.h"
 #include "frontend/sema/configuration/configuration.h"
 #include "frontend/sema/declarations/interfaces.h"
 #include "frontend/sema/declarations/old_names.h"
@@ -40,18 +41,6 @@ ir::Kind instance_kind(PouKind kind) {
   }
 }
 
-// A file with nothing but VAR_GLOBAL, as a GVL of CODESYS and TwinCAT is.
-bool is_list_file(const Sema& sema, const VarBlock& block) {
-  const auto file = sema.sources.file_of(block.span.begin);
-  const auto inside = [&](const auto& declaration) {
-    return sema.sources.file_of(declaration.name.span.begin) == file;
-  };
-  const auto none = [&](const auto& list) {
-    return std::none_of(list.begin(), list.end(), inside);
-  };
-  return none(sema.tree.pous) && none(sema.tree.types) && none(sema.tree.configs);
-}
-
 }  // namespace
 
 void Collection::collect() {
@@ -59,17 +48,10 @@ void Collection::collect() {
   collect_pous();
   if (sema_.for_tests()) ask<TestBuild>().collect_tests();
   collect_types();
-  const VarBlock* head = nullptr;  // a list that others go on has the attributes of all of them
-  std::optional<uint32_t> asked;   // a file, and
-  bool lists_alone = false;        // whether it is a GVL
-  for (const VarBlock& block : sema_.tree.globals) {
-    const uint32_t file = sema_.sources.file_of(block.span.begin);
-    if (block.goes_on && asked != file) {
-      asked = file;
-      lists_alone = is_list_file(sema_, block);
-    }
-    if (head == nullptr || !block.goes_on || !lists_alone) head = &block;
-    collect_globals(block, list_of(*head), *head);
+  const std::vector<const VarBlock*> heads = list_heads(sema_.tree, sema_.sources);
+  for (size_t i = 0; i < heads.size(); ++i) {
+    collect_globals(sema_.tree.globals[i], list_name(sema_.tree, sema_.sources, *heads[i]),
+                    *heads[i]);
   }
   for (const ConfigDecl& config : sema_.tree.configs) {
     if (sema_.tree.in_namespace(config.scope)) {

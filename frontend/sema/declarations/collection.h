@@ -35,7 +35,6 @@ class Collection : public Phase {
   // `head` has the attributes.
   void collect_globals(const VarBlock& block, std::string_view list, const VarBlock& head);
   void collect_globals(const std::vector<VarBlock>& blocks, std::string_view list);
-  std::string_view list_of(const VarBlock& block) const;
   void collect_variables(uint32_t pou, const VarBlock& block);
   VarId shared_by_original(const PouInfo& info, const Variable& variable) const;
   void collect_pous();

@@ -5,16 +5,6 @@
 
 namespace frontend {
 
-// A list's name: what {attribute 'list' := 'Name'} says, else the file's name without folder
-// and extension.
-std::string_view Collection::list_of(const VarBlock& block) const {
-  const Attribute* named = sema_.tree.find_attribute(block.attributes, "list");
-  if (named != nullptr && !named->value.empty()) return named->value;
-  std::string_view file = sema_.sources.file_name(sema_.sources.file_of(block.span.begin));
-  file.remove_prefix(file.find_last_of("/\\") + 1);
-  return file.substr(0, file.find('.'));
-}
-
 void Collection::collect_globals(const std::vector<VarBlock>& blocks, std::string_view list) {
   for (const VarBlock& block : blocks) collect_globals(block, list, block);
 }
