@@ -76,6 +76,8 @@ class Drawing {
     bool label;
     bool title;
     size_t before;  // the element of all_ that follows it in the document
+    int32_t row;    // y as the document says it
+    Node disabled;  // a network that it shows
   };
   static constexpr uint32_t kNone = 0xffffffffu;
 
@@ -122,7 +124,17 @@ class Drawing {
   bool link_block(Raw& raw, Node connection, std::vector<network::Link>& out);
   uint32_t read_back(Raw& raw, Passed& passed);
   void forget_places();
+
+  // --- drawing_remarks.cc
+  struct Inserted {  // a network that is no part of the drawing
+    size_t before;   // the part that follows it
+    int32_t y;
+    network::Network network;
+  };
   void place_remarks(const std::vector<network::Part>& parts, network::Body& body);
+  std::vector<Inserted> disabled_networks(const std::vector<int32_t>& ends);
+  void place_remark(Remark& remark, network::Network& own);
+  static bool does_something(const network::Network& part);
   static void drop_idle(network::Body& body);
   Node node_of(const network::Part& part) const;
   std::string loop_text(const network::Network& part, const std::vector<uint32_t>& loop) const;

@@ -354,7 +354,11 @@ void Drawing::add_remark(Node node, Kind) {
   }
   const bool title = xml::is(node, "vendorElement") && is_title(node);
   if (text.empty()) return;
-  remarks_.push_back({y, std::move(text), node, label, title, all_.elements.size()});
+  Node disabled;
+  for (Node data : xml::children(xml::child(node, "addData"), "data")) {
+    if (is_vendor(data, kDisabledData)) disabled = xml::child(data, "network");
+  }
+  remarks_.push_back({y, std::move(text), node, label, title, all_.elements.size(), y, disabled});
 }
 
 bool Drawing::add(Node node) {

@@ -5,7 +5,6 @@
 #include "adapters/plcopen/drawing.h"
 #include "base/limits.h"
 #include "base/name_case.h"
-#include "frontend/network/head.h"
 
 namespace plcopen {
 
@@ -226,6 +225,7 @@ uint32_t Drawing::read_back(Raw& raw, Passed& passed) {
 
 // Where the drawing has no places, the document's order tells.
 void Drawing::forget_places() {
+  if (all_.elements.empty()) return;
   auto place = [](const network::Position& at) { return std::pair(at.x, at.y); };
   const bool drawn = std::any_of(all_.elements.begin(), all_.elements.end(), [&](const Element& e) {
     return place(e.position) != place(all_.elements.front().position);
@@ -240,43 +240,6 @@ void Drawing::forget_places() {
     remark.y = static_cast<int32_t>(2 * remark.before);
   }
 }
-
-void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Body& body) {
-  const std::vector<int32_t> ends = network::ends_of(parts);
-  if (parts.empty() && !remarks_.empty()) body.networks.emplace_back();
-  for (Remark& remark : remarks_) {
-    // A label below everything is the end of the body.
-    if (remark.label && !ends.empty() && remark.y > ends.back()) {
-      body.networks.emplace_back();
-      body.networks.back().label.text = std::move(remark.text);
-      continue;
-    }
-    network::Network& own = body.networks[network::place_between(ends, remark.y)];
-    if (remark.title && own.title.empty()) {
-      own.title = network::title_of(remark.text);
-      own.headed = !own.title.empty();
-    } else if (!remark.label) {
-      own.comments.push_back(std::move(remark.text));
-    } else if (own.label.empty()) {
-      own.label.text = std::move(remark.text);
-    } else {
-      fail(Code::kXmlBody, remark.node,
-           "the labels `" + own.label.text + "` and `" + remark.text + "` belong to one network");
-    }
-  }
-}
-
-namespace {
-
-bool does_something(const network::Network& part) {
-  return std::any_of(part.elements.begin(), part.elements.end(), [](const Element& element) {
-    return element.kind == Kind::kCoil || element.kind == Kind::kSink ||
-           element.kind == Kind::kBlock || element.kind == Kind::kJump ||
-           element.kind == Kind::kReturn;
-  });
-}
-
-}  // namespace
 
 std::string Drawing::loop_text(const network::Network& part,
                                const std::vector<uint32_t>& loop) const {
@@ -340,36 +303,6 @@ network::Body Drawing::body() {
   place_remarks(parts, out);
   drop_idle(out);
   return out;
-}
-
-// Networks without effect have no text; what stands in front of them belongs to the next.
-void Drawing::drop_idle(network::Body& body) {
-  std::vector<network::Network> kept;
-  std::vector<std::string> comments;
-  for (network::Network& part : body.networks) {
-    part.comments.insert(part.comments.begin(), comments.begin(), comments.end());
-    comments.clear();
-    if (!does_something(part)) {
-      part.elements.clear();
-      if (part.label.empty()) {
-        if (!part.title.empty()) part.comments.insert(part.comments.begin(), part.title);
-        comments = std::move(part.comments);
-        continue;
-      }
-    }
-    kept.push_back(std::move(part));
-  }
-  if (!comments.empty()) {
-    kept.emplace_back();
-    kept.back().comments = std::move(comments);
-  }
-  // In text a title ends the network above, and so does whatever follows below it.
-  bool below = false;
-  for (network::Network& part : kept) {
-    part.headed = part.headed || (below && part.label.empty());
-    below = part.headed;
-  }
-  body.networks = std::move(kept);
 }
 
 // The first element of a part that stands in the document.

@@ -38,6 +38,7 @@ class DiagramWriter {
         placed_ = placed_ && element.position.known;
         next_id_ = std::max(next_id_, element.id);
       }
+      placed_ = placed_ && !each.disabled;  // no place is left for it
     }
     if (next_id_ > kMaxId) placed_ = false;
     ordered_ = by_order_ || !is_order_of_places();
@@ -54,6 +55,8 @@ class DiagramWriter {
   }
   void put(const network::Network& network);
   void put_head(const network::Network& network, int32_t y);
+  void put_title(const std::string& title, int32_t y);
+  void put_comment(const std::string& text, int32_t y, bool disabled);
   std::vector<Place> places(const network::Network& network);
   bool is_order_of_places();
   void put_element(const network::Network& network, uint32_t number, Place place);
@@ -123,12 +126,39 @@ bool DiagramWriter::is_order_of_places() {
   return same;
 }
 
+// As CODESYS does; others show the text. IEC 61131-10 has comments.
+void DiagramWriter::put_title(const std::string& title, int32_t y) {
+  if (by_order_) return put_comment(title, y, false);
+  Node out = node("vendorElement", {20, y}, new_id());
+  writer_.put_formatted(out.append_child("alternativeText"), title);
+  for (const char* list : {"inputVariables", "inOutVariables", "outputVariables"}) {
+    out.append_child(list);
+  }
+  Node type = Writer::data(out, "fbdelementtype").append_child("ElementType");
+  type.append_attribute("xmlns") = "";
+  type.append_child(pugi::node_pcdata).set_value("networktitle");
+}
+
+// `disabled`: it shows a network, which it is when it is read again.
+void DiagramWriter::put_comment(const std::string& text, int32_t y, bool disabled) {
+  Node out = node("comment", {20, y}, new_id());
+  out.append_attribute("height") = 20;
+  out.append_attribute("width") = 200;
+  writer_.put_formatted(out.append_child("content"), text);
+  if (!disabled || by_order_) return;
+  const std::string shown = text.substr(kDisabledMark.size());
+  Node data = out.append_child("addData").append_child("data");
+  data.append_attribute("name") = kDisabledData;
+  data.append_attribute("handleUnknown") = "discard";
+  Node network = data.append_child("network");
+  network.append_attribute("language") = shown.starts_with('|') ? "LADDER" : "FBD";
+  network.append_child(pugi::node_pcdata).set_value(shown.c_str());
+}
+
 void DiagramWriter::put_head(const network::Network& network, int32_t y) {
+  if (!network.title.empty()) put_title(network.title, y);
   for (const std::string& comment : network.comments) {
-    Node out = node("comment", {20, y}, new_id());
-    out.append_attribute("height") = 20;
-    out.append_attribute("width") = 200;
-    writer_.put_formatted(out.append_child("content"), comment);
+    put_comment(comment, y, network.disabled && &comment == &network.comments.back());
   }
   if (!network.label.empty()) {
     node("label", {20, y}, new_id()).append_attribute("label") = network.label.text.c_str();
@@ -141,7 +171,8 @@ void DiagramWriter::put(const network::Network& network) {
     y_ = 20;
   }
   const int32_t top = y_;
-  if (!placed_ && (!network.comments.empty() || !network.label.empty())) y_ += 20;
+  const bool head = !network.title.empty() || !network.comments.empty() || !network.label.empty();
+  if (!placed_ && head) y_ += 20;
   std::vector<Place> at = places(network);
   int32_t first = placed_ ? std::numeric_limits<int32_t>::max() : top;
   for (size_t i = 0; i < at.size() && placed_; ++i) {
@@ -353,6 +384,7 @@ void Writer::diagram(Node body, const network::Body& drawn, const std::string& p
       if (same) best = &kept;
     }
   }
+  if (in_.form == Edition::kIec10 && !parts_) report_heads(drawn, diagnostics_);
   network::Body others = for_others(*best);
   if (const auto span = expressions_to_boxes(others)) {
     fail(*span, "no box of a function says what this expression does with a wire");

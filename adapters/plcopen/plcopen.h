@@ -17,5 +17,7 @@ void keep_object_ids(xml::Node node, xml::Imported& out);
 
 // addData of a block: what FBD as text calls the result of its function (WIRE name := ...).
 inline constexpr const char* kWireData = "stc-wire";
+// A comment that is a disabled network, and its text as <network language="LADDER">.
+inline constexpr const char* kDisabledData = "stc-disabled";
 
 }  // namespace plcopen

@@ -1,0 +1,118 @@
+// Titles, comments and labels of a drawing, and networks that are disabled -> heads of networks.
+#include <algorithm>
+#include <map>
+
+#include "adapters/plcopen/drawing.h"
+#include "frontend/fbd/read.h"
+#include "frontend/ladder/read.h"
+#include "frontend/network/head.h"
+
+namespace plcopen {
+
+using network::Element;
+using network::Kind;
+
+// Each is shown by a comment (plcopen.h, kDisabledData).
+std::vector<Drawing::Inserted> Drawing::disabled_networks(const std::vector<int32_t>& ends) {
+  std::vector<Inserted> out;
+  for (const Remark& remark : remarks_) {
+    if (!remark.disabled) continue;
+    const bool last = ends.empty() || remark.y > ends.back();
+    Inserted made{last ? ends.size() : network::place_between(ends, remark.y), remark.row, {}};
+    const std::string text = xml::text_of(remark.disabled);
+    base::Diagnostics unheard;  // nobody looks at what is disabled
+    network::Body body = xml::attribute(remark.disabled, "language") == "LADDER"
+                             ? frontend::ladder::read(text, base::SourcePos{0}, unheard)
+                             : frontend::fbd::read(text, base::SourcePos{0}, unheard);
+    if (!body.networks.empty()) made.network.elements = std::move(body.networks[0].elements);
+    made.network.disabled = true;
+    made.network.headed = true;
+    out.push_back(std::move(made));
+  }
+  return out;
+}
+
+void Drawing::place_remark(Remark& remark, network::Network& own) {
+  if (remark.title && own.title.empty()) {
+    own.title = network::title_of(remark.text);
+    own.headed = own.headed || !own.title.empty();
+  } else if (!remark.label) {
+    own.comments.push_back(std::move(remark.text));
+  } else if (own.label.empty()) {
+    own.label.text = std::move(remark.text);
+  } else {
+    fail(Code::kXmlBody, remark.node,
+         "the labels `" + own.label.text + "` and `" + remark.text + "` belong to one network");
+  }
+}
+
+void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Body& body) {
+  const std::vector<int32_t> ends = network::ends_of(parts);
+  std::vector<Inserted> inserted = disabled_networks(ends);
+  std::map<int32_t, size_t> rows;  // what stands beside the comment of a disabled network is its
+  for (size_t i = 0; i < inserted.size(); ++i) rows.emplace(inserted[i].y, i);
+  for (Remark& remark : remarks_) {
+    if (remark.disabled) continue;
+    const auto row = rows.find(remark.row);
+    if (row != rows.end()) {
+      place_remark(remark, inserted[row->second].network);
+      continue;
+    }
+    // A label below everything is the end of the body.
+    if (remark.label && !ends.empty() && remark.y > ends.back()) {
+      inserted.push_back({ends.size(), remark.row, {}});
+      inserted.back().network.label.text = std::move(remark.text);
+      continue;
+    }
+    if (body.networks.empty()) body.networks.emplace_back();
+    place_remark(remark, body.networks[network::place_between(ends, remark.y)]);
+  }
+  std::ranges::stable_sort(inserted, [](const Inserted& a, const Inserted& b) {
+    return std::pair(a.before, a.y) < std::pair(b.before, b.y);
+  });
+  for (size_t i = inserted.size(); i-- > 0;) {
+    const size_t at = std::min(inserted[i].before, body.networks.size());
+    body.networks.insert(body.networks.begin() + static_cast<std::ptrdiff_t>(at),
+                         std::move(inserted[i].network));
+  }
+}
+
+bool Drawing::does_something(const network::Network& part) {
+  return std::any_of(part.elements.begin(), part.elements.end(), [](const Element& element) {
+    return element.kind == Kind::kCoil || element.kind == Kind::kSink ||
+           element.kind == Kind::kBlock || element.kind == Kind::kJump ||
+           element.kind == Kind::kReturn;
+  });
+}
+
+// Networks without effect have no text; what stands in front of them belongs to the next.
+void Drawing::drop_idle(network::Body& body) {
+  std::vector<network::Network> kept;
+  std::vector<std::string> comments;
+  for (network::Network& part : body.networks) {
+    part.comments.insert(part.comments.begin(), comments.begin(), comments.end());
+    comments.clear();
+    if (!does_something(part) && (!part.disabled || part.elements.empty())) {
+      part.elements.clear();
+      if (part.label.empty()) {
+        if (!part.title.empty()) part.comments.insert(part.comments.begin(), part.title);
+        comments = std::move(part.comments);
+        continue;
+      }
+    }
+    kept.push_back(std::move(part));
+  }
+  if (!comments.empty()) {
+    kept.emplace_back();
+    kept.back().comments = std::move(comments);
+  }
+  // In text a title ends the network above, and so does whatever follows below it.
+  bool below = false;
+  for (network::Network& part : kept) {
+    part.headed = part.headed || (below && part.label.empty());
+    below = part.headed;
+  }
+  body.networks = std::move(kept);
+}
+
+}  // namespace plcopen
