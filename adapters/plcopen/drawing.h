@@ -137,6 +137,8 @@ class Drawing {
   static bool does_something(const network::Network& part);
   static void drop_idle(network::Body& body);
   Node node_of(const network::Part& part) const;
+  bool follow_data(network::Network& part, const std::vector<network::Precedence>& precedences,
+                   Node node);
   std::string loop_text(const network::Network& part, const std::vector<uint32_t>& loop) const;
 
   bool ladder_;

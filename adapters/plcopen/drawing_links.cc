@@ -241,6 +241,10 @@ void Drawing::forget_places() {
   }
 }
 
+static const std::string& name_of(const Element& element) {
+  return element.kind == Kind::kBlock ? element.type.text : element.operand.text;
+}
+
 std::string Drawing::loop_text(const network::Network& part,
                                const std::vector<uint32_t>& loop) const {
   std::string out;
@@ -249,11 +253,25 @@ std::string Drawing::loop_text(const network::Network& part,
     const Element& element = part.elements[number];
     if (element.kind != Kind::kBlock && element.kind != Kind::kContact) continue;
     if (++shown > 5) return out + " ...";
-    const std::string& name =
-        element.kind == Kind::kBlock ? element.type.text : element.operand.text;
-    out += (out.empty() ? "`" : ", `") + name + "`";
+    out += (out.empty() ? "`" : ", `") + name_of(element) + "`";
   }
   return out;
+}
+
+// Is that the loop: an order that is given, against the flow of data? Then it is no longer.
+bool Drawing::follow_data(network::Network& part,
+                          const std::vector<network::Precedence>& precedences, Node node) {
+  const network::Network said = part;
+  const auto pairs = network::follow_data(part, precedences);
+  for (size_t i = 0; i < pairs.size() && i < 5; ++i) {
+    const Element& read = said.elements[pairs[i].first];
+    const Element& reader = said.elements[pairs[i].second];
+    report_.add(Code::kXmlOrder, node,
+                "`" + name_of(reader) + "` (executionOrderId " + std::to_string(reader.order) +
+                    ") reads `" + name_of(read) + "` (executionOrderId " +
+                    std::to_string(read.order) + "), and is executed behind it here");
+  }
+  return !pairs.empty();
 }
 
 namespace {
@@ -290,6 +308,9 @@ network::Body Drawing::body() {
     Node node = node_of(parts[i]);
     report_.set_network(static_cast<uint32_t>(i + 1));
     std::vector<uint32_t> loop = ordered(part, parts[i].precedences);
+    if (!loop.empty() && follow_data(part, parts[i].precedences, node)) {
+      loop = ordered(part, parts[i].precedences);
+    }
     if (!loop.empty()) {
       fail(Code::kLoopWithoutVariable, node,
            "the value of " + loop_text(part, loop) + " goes in a circle, and nothing keeps it",

@@ -20,7 +20,8 @@ class Graph {
     uint32_t to = 0;
     bool cuttable = false;  // from an output that keeps its value
   };
-  Graph(const Network& network, std::span<const Precedence> precedences);
+  // `data`: values that are kept nowhere, and precedences, alone.
+  Graph(const Network& network, std::span<const Precedence> precedences, bool data = false);
 
   // Component of each element; elements of a loop share one.
   std::vector<uint32_t> components() const;
@@ -35,18 +36,20 @@ class Graph {
   std::vector<std::vector<Edge>> edges_;
 };
 
-Graph::Graph(const Network& network, std::span<const Precedence> precedences)
+Graph::Graph(const Network& network, std::span<const Precedence> precedences, bool data)
     : edges_(network.elements.size()) {
   for (uint32_t i = 0; i < network.elements.size(); ++i) {
     for (const Input& input : network.elements[i].inputs) {
       for (Link link : input.from) {
         const Element& from = network.elements[link.element];
         const bool keeps = from.kind == Kind::kBlock && !from.operand.empty();
-        if (link.element != i || !keeps) edges_[link.element].push_back({i, keeps});
+        if ((link.element != i || !keeps) && (!data || !keeps))
+          edges_[link.element].push_back({i, keeps});
       }
     }
   }
   for (Precedence each : precedences) edges_[each.first].push_back({each.second, false});
+  if (data) return;
   std::vector<std::pair<uint32_t, uint32_t>> given;
   for (uint32_t i = 0; i < network.elements.size(); ++i) {
     if (network.elements[i].order != 0) given.emplace_back(network.elements[i].order, i);
@@ -204,6 +207,31 @@ std::vector<uint32_t> order(Network& network, std::span<const Precedence> preced
   inherit_orders(graph, sequence_of(network, graph, keys), keys);
   renumber(network, sequence_of(network, graph, keys));
   return {};
+}
+
+std::vector<Precedence> follow_data(Network& network, std::span<const Precedence> precedences) {
+  const size_t count = network.elements.size();
+  const Graph graph(network, precedences, true);
+  std::vector<Precedence> out;
+  if (!graph.loop().empty()) return out;
+  const std::vector<Key> no_keys(count);
+  std::vector<uint32_t> latest(count, kNoNode);  // of what it reads, that with the last order
+  const auto order_of = [&](uint32_t element) {
+    return element == kNoNode ? 0 : network.elements[element].order;
+  };
+  for (const uint32_t at : sequence_of(network, graph, no_keys)) {
+    uint32_t& own = network.elements[at].order;
+    const uint32_t wanted = order_of(latest[at]);
+    if (own != 0 && own < wanted) {
+      out.push_back({latest[at], at});
+      own = wanted;
+    }
+    const uint32_t last = own != 0 ? at : latest[at];
+    for (Graph::Edge edge : graph.behind(at)) {
+      if (order_of(last) > order_of(latest[edge.to])) latest[edge.to] = last;
+    }
+  }
+  return out;
 }
 
 }  // namespace frontend::network

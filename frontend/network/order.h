@@ -37,6 +37,11 @@ std::vector<Part> split(const Network& all, std::span<const Precedence> preceden
 // `network`, of a loop that has no such output; `network` stays as it was then.
 std::vector<uint32_t> order(Network& network, std::span<const Precedence> precedences);
 
+// Where Element::order puts something in front of what it reads, and that keeps no value, it gets
+// the order of what it reads, so that order() follows the data. Gives those pairs, `first` is read.
+// Empty, and nothing is changed, where data goes in a circle.
+std::vector<Precedence> follow_data(Network& network, std::span<const Precedence> precedences);
+
 // Where each network ends, for place_between(): the largest end of it and those above.
 std::vector<int32_t> ends_of(const std::vector<Part>& parts);
 

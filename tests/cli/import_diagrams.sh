@@ -93,6 +93,16 @@ body FBD "<continuation localId=\"1\" name=\"K\"/>$(connector 2 "$(from 1)")$(ou
 wrong E1078 'connectors lead in a circle'
 body FBD "$(in_variable 1 1)$(add 2 "$(from 1)" "$(from 3)")$(add 3 "$(from 1)" "$(from 2)")$(out_variable 4 a "$(from 3)")"
 wrong E1078 'network 1: the value of `ADD`, `ADD` goes in a circle'
+# Numbers against the flow of data are no circle. What has no number in between changes nothing.
+ordered() { add "$1" "$3" "$4" | sed "s/typeName=\"ADD\"/typeName=\"$5\" executionOrderId=\"$2\"/"; }
+for rest in "$(ordered 3 1 "$(from 1)" "$(from 2)" MUL)" "$(add 5 "$(from 1)" "$(from 2)")$(ordered 3 1 "$(from 1)" "$(from 5)" MUL)"; do
+  body FBD "$(in_variable 1 3)$(ordered 2 2 "$(from 1)" "$(from 1)" ADD)$rest$(ordered 6 3 "$(from 1)" "$(from 1)" SUB)$(out_variable 4 a "$(from 3)")$(out_variable 7 a "$(from 6)")"
+  good
+  said 'warning\[W0076\]: POU P, network 1: `MUL` \(executionOrderId 1\) reads `ADD` \(executionOrderId 2\)'
+  rm -rf made
+  expect 0 stc import small.xml -o made
+  grep -E '(ADD|MUL|SUB)\(' made/P.st | sed 's/.*\(ADD\|MUL\|SUB\)(.*/\1/' | tr '\n' ' ' | grep -qE '^(ADD )+MUL SUB $' || fail "order: $(cat made/P.st)"
+done
 body FBD "$(in_variable 1 1)$(add 2 "$(from 1)$(from 1)" "$(from 1)")"
 wrong E1079 'several connections lead to the input `IN1`'
 body FBD "$(in_variable 1 b)$(in_variable 2 c)$(out_variable 3 b "$(from 1)$(from 2)")"
