@@ -35,12 +35,6 @@ void warn_of_half_times(const Phase& phase, ir::TypeId from, ir::TypeId to, base
                 "convert the value, for example with TO_" + phase.sema().report.type_text(target));
 }
 
-bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
-  const Traits traits = traits_of(types, target);
-  if (!traits.number() && !traits.bits) return false;
-  return traits.real || ir::scalar_size(types.scalar(target)) > ir::scalar_size(types.scalar(own));
-}
-
 }  // namespace
 
 ir::TypeId Values::own_type(const Note& note, ir::TypeId target) const {

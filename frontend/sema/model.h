@@ -182,9 +182,10 @@ enum class Known : uint8_t {
 // Of an integer or bit string below 32 bits: what an operator does with it (docs/LANGUAGE.md,
 // "Width of intermediate results").
 enum class Width : uint8_t {
-  kOwn,    // it has the width of its type
-  kWide,   // codesys, twincat: an operator made it, as a DINT; it counts as its `type`
-  kWraps,  // iec: it is what `+`, `-` or `*` has cut to its type
+  kOwn,     // it has the width of its type
+  kWide,    // codesys, twincat: an operator made it, as a DINT; it counts as its `type`
+  kWraps,   // iec: it is what `+`, `-` or `*` has cut to its type, or one of several such
+  kCopies,  // iec: a conversion of what is kWraps, which has the same number of bits
 };
 
 struct Note {

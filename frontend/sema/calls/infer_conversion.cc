@@ -3,6 +3,7 @@
 
 #include "frontend/sema/calls/calls.h"
 #include "frontend/sema/calls/standard_calls.h"
+#include "frontend/sema/expressions/operand_warnings.h"
 #include "frontend/sema/sema.h"
 #include "frontend/sema/types/types.h"
 
@@ -67,14 +68,31 @@ Note StandardCalls::infer_conversion(const Expr& expr, const Conversion& convers
   note.known = std::min(note.known, Known::kByCall);
   ask<Calls>().mark_enabled(expr, note);
   note.flex = Flex::kNone;
+  const Note given = infer(argument);
   note.width = Width::kOwn;
   note.type = conversion.to == ir::Kind::kString    ? sema_.program.types.string(capacity)
               : conversion.to == ir::Kind::kWstring ? sema_.program.types.wstring(capacity)
                                                     : sema_.program.types.elementary(conversion.to);
   if (conversion.enumeration.valid()) note.type = conversion.enumeration;
+  if (given.width == Width::kWraps) check_cut_argument(argument, conversion, note);
   bool rounds = source.real && !traits_of(sema_.program.types, note.type).real;
   note.can_trap = note.can_trap || rounds || conversion.bcd != Conversion::Bcd::kNone;
   return note;
+}
+
+// `made`: the result. TO_DINT(a * 3) comes too late.
+void StandardCalls::check_cut_argument(ExprId argument, const Conversion& conversion, Note& made) {
+  const ir::TypeTable& types = sema_.program.types;
+  const Note& given = infer(argument);
+  const bool own = conversion.any_source || types.root_kind(given.type) == conversion.from;
+  if (!own || !types.is_scalar(made.type)) return;  // else it is passed to another type
+  const Traits to = traits_of(types, made.type);
+  if (is_wider(types, made.type, given.type) || to.duration) {
+    check_wrapped(*this, argument, "widened");
+  } else if ((to.integer || to.bits) && ir::scalar_size(types.scalar(made.type)) ==
+                                            ir::scalar_size(types.scalar(given.type))) {
+    made.width = Width::kCopies;
+  }
 }
 
 // As CODESYS has it: the number, unless the type says {attribute 'to_string'}.

@@ -198,7 +198,8 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       Traits count = traits_of(sema_.program.types, argument(1).type);
       note.type = without_range(sema_.program.types, note.type);
       if (!traits.bits && !traits.integer) return refuse(note);
-      if (row.id == stdlib::FunctionId::kShr) check_wrapped(*this, args[0], "shifted right");
+      if (row.id == stdlib::FunctionId::kShr)
+        check_wrapped(*this, cut_below(args[0]), "shifted right");
       return count.integer || count.bits ? note : refuse(argument(1));
     }
     case FunctionRule::kSelect:
@@ -223,6 +224,12 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return elementary(ir::Kind::kInt);
   }
   return {};
+}
+
+// INT_TO_WORD(a * 3), which makes bits of a number, is what was cut in it.
+ExprId StandardCalls::cut_below(ExprId id) {
+  while (infer(id).width == Width::kCopies) id = ask<Calls>().conversion_argument(sema_.tree[id]);
+  return id;
 }
 
 // The leading arguments are strings of one kind. The result has room for whatever

@@ -24,9 +24,11 @@ class StandardCalls : public Phase {
                   const std::vector<ExprId>& args);
   bool standard_argument(const Arg& arg, const stdlib::FunctionRow& row, uint32_t number,
                          std::vector<ExprId>& ordered);
+  ExprId cut_below(ExprId id);
   Note infer_by_signature(const stdlib::FunctionRow& row, const std::vector<ExprId>& args);
   bool takes(std::string_view wanted, const Note& argument) const;
   Note infer_string_function(const std::vector<ExprId>& args, const stdlib::FunctionRow& row);
+  void check_cut_argument(ExprId argument, const Conversion& conversion, Note& made);
   bool check_conversion(const Expr& expr, const Conversion& conversion, ir::Kind from,
                         const Note& argument);
 };

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include "frontend/sema/calls/calls.h"
+#include "frontend/sema/calls/standard_calls.h"
 #include "frontend/sema/expressions/operators.h"
+#include "frontend/sema/expressions/value_range.h"
 
 namespace frontend {
 
@@ -124,9 +127,29 @@ void check_real_equality(const Phase& phase, const Expr& expr) {
                 "compare the distance: ABS(a - b) < limit");
 }
 
+bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
+  const Traits traits = traits_of(types, target);
+  if (!traits.number() && !traits.bits) return false;
+  return traits.real || ir::scalar_size(types.scalar(target)) > ir::scalar_size(types.scalar(own));
+}
+
 void check_wrapped(const Phase& phase, ExprId operand, std::string_view used) {
   const Note& note = phase.infer(operand);
   if (note.width != Width::kWraps || note.constant) return;
+  const Expr& expr = phase.sema().tree[operand];
+  if (expr.kind == ExprKind::kCall) {
+    using stdlib::FunctionRule;
+    const Callee callee = phase.ask<Calls>().callee(expr);
+    if (callee.kind != Callee::Kind::kStandard) return;
+    const FunctionRule rule = callee.row->rule;
+    if (rule != FunctionRule::kArithmetic && rule != FunctionRule::kBitwise) {
+      const bool chooses = rule == FunctionRule::kSelect || rule == FunctionRule::kMux;
+      const auto args = phase.ask<StandardCalls>().standard_arguments(expr, *callee.row);
+      for (size_t i = chooses ? 1 : 0; i < args.size(); ++i) check_wrapped(phase, args[i], used);
+      return;
+    }
+  }
+  if (!may_leave_type(phase, operand)) return;
   const std::string type = phase.sema().report.type_text(note.type);
   phase.warning(DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
                 "the result is cut to `" + type + "` before it is " + std::string(used),

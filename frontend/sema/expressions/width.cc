@@ -48,6 +48,17 @@ Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& l
   return note;
 }
 
+// Of MOVE, SEL, MUX, MAX and their kin.
+static Width width_of_choice(const Phase& phase, const stdlib::FunctionRow& row,
+                             const std::vector<ExprId>& args) {
+  if (has_wide(phase, args)) return Width::kWide;
+  const bool chooses =
+      row.rule == stdlib::FunctionRule::kSelect || row.rule == stdlib::FunctionRule::kMux;
+  const bool wraps = std::any_of(args.begin() + (chooses ? 1 : 0), args.end(),
+                                 [&](ExprId id) { return phase.infer(id).width == Width::kWraps; });
+  return wraps ? Width::kWraps : Width::kOwn;
+}
+
 Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
                      const std::vector<ExprId>& args, const Note& note, bool typed) {
   using stdlib::FunctionRule;
@@ -57,12 +68,13 @@ Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
     case FunctionRule::kBitwise:
       return note.width;
     case FunctionRule::kNumberSame:
+      if (phase.infer(args[0]).width == Width::kWraps) return Width::kWraps;
       return width_of(phase.sema(), note, false);
     case FunctionRule::kMove:
     case FunctionRule::kSelect:
     case FunctionRule::kMux:
     case FunctionRule::kExtreme:
-      return is_small(phase.sema(), note) && has_wide(phase, args) ? Width::kWide : Width::kOwn;
+      return is_small(phase.sema(), note) ? width_of_choice(phase, row, args) : Width::kOwn;
     case FunctionRule::kReal:
     case FunctionRule::kTrunc:
     case FunctionRule::kShift:
