@@ -2,6 +2,7 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
+#include "frontend/sema/expressions/operand_warnings.h"
 #include "frontend/sema/expressions/operator_types.h"
 #include "frontend/sema/expressions/operators.h"
 #include "frontend/sema/expressions/width.h"
@@ -85,7 +86,9 @@ ir::ValueId Values::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   Note common = ask<OperatorTypes>().unify(infer(left), infer(right), tree_[left].span);
   if (!common.type.valid()) return code_.zero(elementary(ir::Kind::kBool));
   if (is_string(types(), common.type)) return compare_strings(op, left, right);
-  common.type = compared_type(*this, common.type, {left, right});
+  const ir::TypeId narrow = compared_type(*this, common.type, {left, right});
+  common.type = compared_with_literals(*this, narrow, {left, right});
+  if (common.type != narrow) warn_of_decided(*this, op, left, right, narrow);
   ir::ValueId a = value(left, common.type);
   ir::ValueId b = value(right, common.type);
   const bool equality = op == BinaryOp::kEq || op == BinaryOp::kNe;

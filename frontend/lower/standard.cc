@@ -5,6 +5,7 @@
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
 #include "frontend/sema/calls/standard_calls.h"
+#include "frontend/sema/expressions/operand_warnings.h"
 #include "frontend/sema/expressions/operator_types.h"
 #include "frontend/sema/expressions/operators.h"
 #include "frontend/sema/expressions/width.h"
@@ -214,7 +215,9 @@ ir::ValueId StandardCode::compare_chain(const std::vector<ExprId>& args, BinaryO
                                         ir::TypeId common) {
   if (!common.valid()) return code_.zero(elementary(ir::Kind::kBool));
   bool text = is_string(types(), common);
-  common = compared_type(*this, common, args);
+  const ir::TypeId narrow = compared_type(*this, common, args);
+  common = compared_with_literals(*this, narrow, args);
+  if (common != narrow && args.size() == 2) warn_of_decided(*this, op, args[0], args[1], narrow);
   ir::ValueList values;
   std::vector<ir::Place> places;
   for (ExprId arg : args) {

@@ -15,6 +15,8 @@ class Constants : public Phase {
   using Phase::Phase;
 
   // --- constants (fold*.cc, initial_values.cc)
+  // Does `target`, an integer or a bit string, hold it, as a number or as its bits?
+  bool fits(const Constant& value, ir::TypeId target) const;
   // nullopt when reported. `context` steers literals; may be invalid.
   std::optional<Constant> fold(ExprId expr, ir::TypeId context, Known least = Known::kByCall);
   std::optional<uint64_t> fold_bits(ExprId expr, ir::TypeId target, Known least = Known::kByCall);
@@ -37,6 +39,7 @@ class Constants : public Phase {
  private:
   // Bits for a signed integer, a negative number for a bit string: taken as they are, with a
   // warning, unless the dialect is the standard's own.
+  bool has_same_bits(const Constant& value, Wide integer, ir::TypeId target) const;
   std::optional<uint64_t> same_bits(const Constant& value, Wide integer, ir::TypeId target,
                                     base::SourceSpan span);
   std::optional<TypeUse> initial_variable(const Expr& expr, VarId id);

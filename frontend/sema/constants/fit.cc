@@ -108,26 +108,35 @@ std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
   return std::nullopt;
 }
 
-std::optional<uint64_t> Constants::same_bits(const Constant& value, Wide integer, ir::TypeId target,
-                                             base::SourceSpan span) {
-  Traits to = traits_of(sema_.program.types, target);
+bool Constants::fits(const Constant& value, ir::TypeId target) const {
+  const Limits limits = limits_of(sema_.program.types.scalar(target));
+  const bool inside = value.integer >= limits.low && value.integer <= limits.high;
+  return inside || has_same_bits(value, value.integer, target);
+}
+
+bool Constants::has_same_bits(const Constant& value, Wide integer, ir::TypeId target) const {
+  const Traits to = traits_of(sema_.program.types, target);
   if (sema_.options.dialect == Dialect::kIec || value.form != Constant::Form::kInteger ||
       sema_.program.types[target].kind == ir::Kind::kSubrange) {
-    return std::nullopt;
+    return false;
   }
-  ir::Scalar scalar = sema_.program.types.scalar(target);
-  Wide span_of_bits = static_cast<Wide>(1) << (ir::scalar_size(scalar) * 8);
-  bool pattern =
+  const ir::Scalar scalar = sema_.program.types.scalar(target);
+  const Wide span_of_bits = static_cast<Wide>(1) << (ir::scalar_size(scalar) * 8);
+  const bool pattern =
       value.pattern || (value.type.valid() && traits_of(sema_.program.types, value.type).bits);
-  bool into_signed =
+  const bool into_signed =
       to.integer && ir::is_signed(scalar) && pattern && integer > 0 && integer < span_of_bits;
-  bool into_bits = to.bits && integer < 0 && integer >= -span_of_bits / 2;
-  if (!into_signed && !into_bits) return std::nullopt;
-  Wide wrapped = wrap_to(scalar, integer);
+  return into_signed || (to.bits && integer < 0 && integer >= -span_of_bits / 2);
+}
+
+std::optional<uint64_t> Constants::same_bits(const Constant& value, Wide integer, ir::TypeId target,
+                                             base::SourceSpan span) {
+  if (!has_same_bits(value, integer, target)) return std::nullopt;
+  const Wide wrapped = wrap_to(sema_.program.types.scalar(target), integer);
   warning(DiagnosticCode::kSignChanged, span,
           wide_text(integer) + " becomes " + wide_text(wrapped) + " in `" +
               sema_.report.type_text(target) + "`",
-          into_bits ? "write the bits, for example with 16#" : "write the number");
+          integer < 0 ? "write the bits, for example with 16#" : "write the number");
   return static_cast<uint64_t>(wrapped);
 }
 

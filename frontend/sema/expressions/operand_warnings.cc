@@ -127,6 +127,22 @@ void check_real_equality(const Phase& phase, const Expr& expr) {
                 "compare the distance: ABS(a - b) < limit");
 }
 
+void warn_of_decided(const Phase& phase, BinaryOp op, ExprId left, ExprId right, ir::TypeId type) {
+  const bool behind = phase.infer(right).constant;
+  const ExprId literal = behind ? right : left;
+  const auto value = phase.ask<Constants>().fold(literal, {});
+  if (!value) return;
+  const Limits limits = limits_of(phase.sema().program.types.scalar(type));
+  const bool less = (value->integer > limits.high) == behind;  // is left less than right?
+  const bool holds = op == BinaryOp::kNe ||
+                     (op != BinaryOp::kEq && less == (op == BinaryOp::kLt || op == BinaryOp::kLe));
+  const std::string name = phase.sema().report.type_text(type);
+  phase.warning(DiagnosticCode::kConditionConstant, phase.sema().tree[literal].span,
+                "this comparison is always " + std::string(holds ? "TRUE" : "FALSE") + ": `" +
+                    name + "` holds " + wide_text(limits.low) + ".." + wide_text(limits.high),
+                "compare with a value in it, or take a longer type");
+}
+
 bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own) {
   const Traits traits = traits_of(types, target);
   if (!traits.number() && !traits.bits) return false;

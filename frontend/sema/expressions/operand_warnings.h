@@ -10,6 +10,8 @@ void check_right_operand(const Phase& phase, const Expr& expr);
 // The divisor is constant. `whole`: 0 traps. A literal is an error then (E3012).
 void check_divisor(const Phase& phase, ExprId divisor, bool whole);
 void check_real_equality(const Phase& phase, const Expr& expr);
+// One side is a literal that no value of `type` reaches, which the other side has.
+void warn_of_decided(const Phase& phase, BinaryOp op, ExprId left, ExprId right, ir::TypeId type);
 // Is `target` a number that has values which `own`, an integer or a bit string, has not?
 bool is_wider(const ir::TypeTable& types, ir::TypeId target, ir::TypeId own);
 // Dialect iec: an operand that was cut to its type before it is `used`: "compared", "widened".

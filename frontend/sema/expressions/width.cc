@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "frontend/sema/constants/constants.h"
 #include "frontend/sema/phase.h"
 #include "frontend/sema/types/conversion.h"
 
@@ -108,6 +109,46 @@ ir::TypeId compared_type(const Phase& phase, ir::TypeId common,
   meeting.type = common;
   const bool wide = is_small(phase.sema(), meeting) && has_wide(phase, operands);
   return wide ? phase.sema().program.types.elementary(ir::Kind::kDint) : common;
+}
+
+namespace {
+
+// An integer without a type.
+std::optional<Constant> bare_literal(const Phase& phase, ExprId id) {
+  const Note& note = phase.infer(id);
+  if (!note.constant || note.flex != Flex::kInteger) return std::nullopt;
+  auto value = phase.ask<Constants>().fold(id, {});
+  return value && value->form == Constant::Form::kInteger ? value : std::nullopt;
+}
+
+}  // namespace
+
+ir::TypeId compared_with_literals(const Phase& phase, ir::TypeId compared,
+                                  const std::vector<ExprId>& operands) {
+  const ir::TypeTable& types = phase.sema().program.types;
+  if (phase.sema().options.dialect == Dialect::kIec || !types.is_scalar(compared)) return compared;
+  const Traits traits = traits_of(types, compared);
+  const uint32_t size = ir::scalar_size(types.scalar(compared));
+  if ((!traits.integer && !traits.bits) || size == 8) return compared;
+  const bool is_signed = ir::is_signed(types.scalar(compared));
+  ir::TypeId out = compared;
+  for (const ExprId id : operands) {
+    const auto value = bare_literal(phase, id);
+    if (!value || phase.ask<Constants>().fits(*value, compared)) continue;
+    if (value->integer < 0 && size == 4 && !is_signed) return compared;  // -1 may be all bits
+    const auto within = [&](ir::Scalar scalar) {
+      const Limits limits = limits_of(scalar);
+      return value->integer >= limits.low && value->integer <= limits.high;
+    };
+    if (size < 4 && within(ir::Scalar::kI32)) {
+      if (out == compared) out = types.elementary(ir::Kind::kDint);
+    } else if (within(ir::Scalar::kI64)) {
+      out = types.elementary(ir::Kind::kLint);
+    } else {
+      return compared;
+    }
+  }
+  return out;
 }
 
 Note widened_by(const Sema& sema, Note note, ExprId operand) {

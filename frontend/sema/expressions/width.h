@@ -29,6 +29,10 @@ Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
 // What operands that have a type in common are compared in: DINT where one of them is wide.
 ir::TypeId compared_type(const Phase& phase, ir::TypeId common,
                          const std::vector<ExprId>& operands);
+// codesys, twincat: the same of operators of comparison, where a literal that does not fit
+// `compared` has a type of its own, DINT or a longer one.
+ir::TypeId compared_with_literals(const Phase& phase, ir::TypeId compared,
+                                  const std::vector<ExprId>& operands);
 // Was one of them made by an operator that computes it as DINT?
 bool has_wide(const Phase& phase, const std::vector<ExprId>& operands);
 // A literal that does not fit the type of the other operand gives the operation its own type: DINT,
