@@ -120,7 +120,7 @@ const WrongBody kBodies[] = {
     {"E3001", "a : ARRAY[0..1] OF INT; b : ARRAY[0..2] OF INT;", "a := b;"},
     {"E3001", "s : STRING; w : WSTRING;", "s := w;"},
     {"E3002", "x : USINT;", "x := 256;"},
-    {"E3002", "x : USINT; b : BOOL;", "b := x = -1;"},
+    {"E3002", "x : ULINT; b : BOOL;", "b := x = -1;"},
     {"E3002", "x : INT(0..5);", "x := 6;"},
     {"E3003", "x : REAL;", "x := x MOD 2.0;"},
     {"E3003", "x : STRING; b : BOOL; y : BOOL;", "b := NOT x = y;"},
