@@ -26,9 +26,10 @@ const char* severity_text(base::Severity severity) {
   return "?";
 }
 
-void collect(const base::SourceMap& sources, base::Diagnostics& diagnostics, Outcome& outcome) {
+void collect(const base::SourceMap& sources, base::Diagnostics& diagnostics, Outcome& outcome,
+             bool with_help = false) {
   outcome.errors = diagnostics.has_errors();
-  outcome.messages = messages_of(sources, diagnostics);
+  outcome.messages = messages_of(sources, diagnostics, with_help);
 }
 
 frontend::CompileOptions options_of(const TestFile& test, size_t version) {
@@ -54,8 +55,8 @@ base::Result<ir::PassSet> passes_of(const TestFile& test) {
 
 }  // namespace
 
-std::vector<std::string> messages_of(const base::SourceMap& sources,
-                                     base::Diagnostics& diagnostics) {
+std::vector<std::string> messages_of(const base::SourceMap& sources, base::Diagnostics& diagnostics,
+                                     bool with_help) {
   std::vector<std::string> out;
   diagnostics.sort();
   for (const base::Diagnostic& message : diagnostics.all()) {
@@ -64,6 +65,7 @@ std::vector<std::string> messages_of(const base::SourceMap& sources,
     out.push_back(std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
                   severity_text(message.severity) + "[" + std::string(row.code) +
                   "]: " + message.text);
+    if (with_help && !message.fix.empty()) out.push_back("help: " + message.fix);
   }
   return out;
 }
@@ -83,7 +85,7 @@ base::Result<Program> compile(const TestFile& test, size_t version, Outcome& out
   } else {
     program = frontend::compile(sources, options_of(test, version), diagnostics);
   }
-  collect(sources, diagnostics, outcome);
+  collect(sources, diagnostics, outcome, test.has_option("--help"));
   if (!program) {
     std::string all;
     for (const std::string& message : outcome.messages) {

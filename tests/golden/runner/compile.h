@@ -32,8 +32,8 @@ struct Outcome {
   bool errors = false;
 };
 
-std::vector<std::string> messages_of(const base::SourceMap& sources,
-                                     base::Diagnostics& diagnostics);
+std::vector<std::string> messages_of(const base::SourceMap& sources, base::Diagnostics& diagnostics,
+                                     bool with_help = false);
 
 base::Result<Program> compile(const TestFile& test, size_t version, Outcome& outcome);
 base::Result<ir::VerifiedImage> link(const Program& program, const ir::Image* base, bool move_all);
