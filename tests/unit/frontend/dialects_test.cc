@@ -25,6 +25,7 @@ std::set<std::string> codes_for(const DialectRule& rule, Dialect dialect) {
     bool matters = row.severity == base::Severity::kError ||
                    message.code == base::DiagnosticCode::kImplicitNarrowing ||
                    message.code == base::DiagnosticCode::kSignChanged ||
+                   message.code == base::DiagnosticCode::kConditionConstant ||
                    message.code == base::DiagnosticCode::kCutBeforeUse;
     if (matters) out.insert(std::string(row.code));
   }
