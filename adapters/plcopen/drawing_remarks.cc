@@ -70,11 +70,16 @@ void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Bo
   std::ranges::stable_sort(inserted, [](const Inserted& a, const Inserted& b) {
     return std::pair(a.before, a.y) < std::pair(b.before, b.y);
   });
-  for (size_t i = inserted.size(); i-- > 0;) {
-    const size_t at = std::min(inserted[i].before, body.networks.size());
-    body.networks.insert(body.networks.begin() + static_cast<std::ptrdiff_t>(at),
-                         std::move(inserted[i].network));
+  std::vector<network::Network> all;
+  auto next = inserted.begin();
+  for (size_t i = 0; i <= body.networks.size(); ++i) {
+    const bool last = i == body.networks.size();
+    for (; next != inserted.end() && (last || next->before <= i); ++next) {
+      all.push_back(std::move(next->network));
+    }
+    if (!last) all.push_back(std::move(body.networks[i]));
   }
+  body.networks = std::move(all);
 }
 
 bool Drawing::does_something(const network::Network& part) {
