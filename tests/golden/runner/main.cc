@@ -1,5 +1,5 @@
-// golden [--update] PATHS...: runs golden files (folders recursively), prints what
-// differs, ends with "N passed, N failed".
+// golden [--update] [--dialect NAME] PATHS...: runs golden files (folders recursively), prints what
+// differs, ends with "N passed, N failed". The dialect is that of files which name none.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -111,12 +111,13 @@ bool passes(const golden::TestFile& test, const golden::Actual& actual) {
   return good;
 }
 
-bool run_one(const std::string& path, bool update) {
+bool run_one(const std::string& path, bool update, const std::string& dialect) {
   base::Result<golden::TestFile> test = golden::read_test(path);
   if (!test.ok()) {
     std::printf("FAIL %s\n    %s\n", path.c_str(), base::to_string(test.error()).c_str());
     return false;
   }
+  if (!dialect.empty()) test->options.insert(test->options.end(), {"--dialect", dialect});
   golden::Actual actual = golden::produce(*test);
   if (update && actual.failures.empty() && names_nothing_new(*test, actual)) {
     std::string text = golden::updated(*test, actual.outputs, actual.scans);
@@ -131,6 +132,7 @@ bool run_one(const std::string& path, bool update) {
 
 int main(int argc, char** argv) {
   bool update = false;
+  std::string dialect;
   int passed = 0;
   int failed = 0;
   for (int i = 1; i < argc; ++i) {
@@ -138,8 +140,12 @@ int main(int argc, char** argv) {
       update = true;
       continue;
     }
+    if (std::strcmp(argv[i], "--dialect") == 0 && i + 1 < argc) {
+      dialect = argv[++i];
+      continue;
+    }
     for (const std::string& path : tests_below(argv[i])) {
-      bool good = run_one(path, update);
+      bool good = run_one(path, update, dialect);
       if (!good) std::printf("FAIL %s\n", path.c_str());
       (good ? passed : failed) += 1;
     }
