@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/name_case.h"
 #include "frontend/compile.h"
 #include "frontend/parse/parse.h"
 #include "frontend/source_edits.h"
@@ -171,6 +172,10 @@ std::vector<std::string> sources_below(const std::string& folder) {
   }
   std::sort(paths.begin(), paths.end());
   return paths;
+}
+
+uint64_t seed_of(const std::string& path) {
+  return base::name_hash(std::filesystem::path(path).filename().string());
 }
 
 }  // namespace test

@@ -43,5 +43,7 @@ base::SourceMap one_file(const std::string& text);
 std::string read_file(const std::string& path);
 // All *.st files below a folder of the repository, sorted.
 std::vector<std::string> sources_below(const std::string& folder);
+// Of its file name: the same whatever other files come, and wherever the repository lies.
+uint64_t seed_of(const std::string& path);
 
 }  // namespace test

@@ -464,9 +464,11 @@ TEST(Merge, E09_EqualsTheCompilerOnSourcesWithBothEdits) {
   for (const std::string& path : test::sources_below("tests/golden")) {
     if (++number % kOneOf != 0) continue;
     const std::string text = test::read_file(path);
+    // An edit of what is not compiled is in no image, and becomes one by another edit of its condition.
+    if (text.find("{IF") != std::string::npos) continue;
     const std::optional<ir::Image> original = compiled(text);
     if (!original) continue;
-    test::Random random(number);
+    test::Random random(test::seed_of(path));
     for (int round = 0; round < 4; ++round) {
       const std::string next = test::edited(text, random);
       const std::string own = test::edited(text, random);

@@ -46,7 +46,7 @@ TEST(QuestionsAfterEdits, L01_AreAnsweredAsFromNothingAndChangeNothing) {
   for (const std::string& path : test::sources_below("tests/golden")) {
     const std::string original = test::read_file(path);
     if (++number % (7 * kOneOf) != 0) continue;
-    test::Random random(number);
+    test::Random random(test::seed_of(path));
     workspace::Settings settings;
     workspace::IncrementalBuild build(settings);
     std::string text = original;

@@ -45,7 +45,7 @@ TEST(RandomEdits, PerformanceIncrementalBuildsEqualBuildsFromNothing) {
     const std::string original = test::read_file(path);
     const bool configured = has_configuration(original);
     if (++number % every != 0 && !configured) continue;
-    test::Random random(seed * 1000 + number);
+    test::Random random(seed + test::seed_of(path));
     workspace::Settings settings;
     const test::Outcome first = test::build_from_nothing(test::one_file(original), settings);
     if (!first.image) continue;

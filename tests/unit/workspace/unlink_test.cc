@@ -74,12 +74,11 @@ class Check {
 
 TEST(Unlink, E09_EveryImageComesBackFromItsParts) {
   Check check;
-  uint32_t number = 0;
   for (const std::string& path : test::sources_below("tests/golden")) {
     const std::string text = test::read_file(path);
     const std::optional<ir::Image> first = check.build(path, text, nullptr);
     if (!first || ::testing::Test::HasFailure()) continue;
-    test::Random random(++number);
+    test::Random random(test::seed_of(path));
     (void)check.build(path, test::edited(text, random), &*first);
   }
   EXPECT_GT(check.images(), 500u);  // otherwise little was tested
