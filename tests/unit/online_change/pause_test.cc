@@ -12,7 +12,7 @@ namespace {
 
 using plant::Plant;
 
-#if !defined(__OPTIMIZE__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if !defined(__OPTIMIZE__) || defined(STC_SANITIZED_HEAP)
 constexpr bool kOptimised = false;
 #else
 constexpr bool kOptimised = true;
