@@ -32,7 +32,7 @@ BLOCKS = {
     "SHL": ("IN N", "OUT"), "SHR": ("IN N", "OUT"), "ROL": ("IN N", "OUT"), "LEN": ("IN", "OUT"),
     "NOT": ("IN", "OUT"), "ABS": ("IN", "OUT"), "SQRT": ("IN", "OUT"), "MOVE": ("IN", "OUT"),
     "LEFT": ("IN L", "OUT"), "MID": ("IN L P", "OUT"), "HYSTERESIS": ("XIN1 XIN2 EPS", "Q"),
-    "INTEGRAL": ("RUN R1 XIN X0 CYCLE", "Q XOUT"),
+    "INTEGRAL": ("RUN R1 XIN X0 CYCLE", "Q XOUT"), "PID": ("AUTO PV SP X0 KP TR TD CYCLE", "XOUT"),
 }
 
 
@@ -100,7 +100,9 @@ def split_top(text, mark):
 def initial(text):
     text = text.strip()
     if text.startswith("["):
-        return tag("arrayValue", (), [tag("value", (), [initial(part)]) for part in split_top(text[1:-1], ",")])
+        parts = [re.fullmatch(r"(?:(\d+)\()?(.*?)(?(1)\))", part, re.S) for part in split_top(text[1:-1], ",")]
+        return tag("arrayValue", (), [tag("value", [("repetitionValue", part[1])] if part[1] else (),
+                                          [initial(part[2])]) for part in parts])
     if text.startswith("("):
         fields = [part.split(":=", 1) for part in split_top(text[1:-1], ",")]
         return tag("structValue", (), [tag("value", [("member", a.strip())], [initial(b)]) for a, b in fields])
@@ -709,8 +711,8 @@ class Pou:
 
 
 def configuration(lines):
-    """`task NAME INTERVAL PRIORITY`, `run PROGRAM as NAME with TASK`, `var` and `resource var` lines."""
-    tasks, globals_, of_resource = [], [], []
+    """`task NAME INTERVAL PRIORITY`, `run PROGRAM as NAME with TASK`, `var`, `constant` and `resource var`."""
+    tasks, globals_, constants, of_resource = [], [], [], []
     for line in lines:
         line = line.strip()
         if line.startswith("task "):
@@ -724,12 +726,16 @@ def configuration(lines):
             of_resource.append(line[13:])
         elif line.startswith("var "):
             globals_.append(line[4:])
+        elif line.startswith("constant "):
+            constants.append(line[9:])
     resource = [tag("task", [("name", n), ("priority", p), ("interval", i)], runs) for n, i, p, runs in tasks]
     if of_resource:
         resource.append(tag("globalVars", (), variables(of_resource)))
     parts = [tag("resource", [("name", "resource1")], resource)]
     if globals_:
         parts.append(tag("globalVars", (), variables(globals_)))
+    if constants:
+        parts.append(tag("globalVars", [("constant", "true")], variables(constants)))
     return tag("configuration", [("name", "config")], parts)
 
 
