@@ -276,18 +276,40 @@ bool Drawing::follow_data(network::Network& part,
 
 namespace {
 
+// By element, those that read it.
+std::vector<std::vector<uint32_t>> readers_of(const network::Network& network) {
+  std::vector<std::vector<uint32_t>> readers(network.elements.size());
+  for (uint32_t reader = 0; reader < network.elements.size(); ++reader) {
+    for (const network::Input& input : network.elements[reader].inputs) {
+      for (const network::Link& link : input.from) {
+        if (link.element < readers.size()) readers[link.element].push_back(reader);
+      }
+    }
+  }
+  return readers;
+}
+
 // A variable that is read and written in one place is read after it, unless what it reads goes
 // through the place itself: then it keeps its value until the next scan. Gives a loop that is left.
 std::vector<uint32_t> ordered(network::Network& network,
                               std::vector<network::Precedence> precedences) {
   constexpr int kMostLoops = 100;  // each costs as much as the network is large
   std::vector<uint32_t> loop = network::order(network, precedences);
+  std::vector<std::vector<uint32_t>> readers;
   for (int i = 0; i < kMostLoops && !loop.empty(); ++i) {
     const std::set<uint32_t> in_loop(loop.begin(), loop.end());
+    if (readers.empty()) readers = readers_of(network);
+    std::vector<network::Precedence> later;
     const size_t gone = std::erase_if(precedences, [&](const network::Precedence& each) {
-      return in_loop.count(each.first) != 0 && in_loop.count(each.second) != 0;
+      const bool inside = in_loop.count(each.first) != 0 && in_loop.count(each.second) != 0;
+      if (!inside || network.elements[each.second].kind != Kind::kSource) return inside;
+      for (const uint32_t reader : readers[each.second]) {  // outside of the loop: once written
+        if (in_loop.count(reader) == 0) later.push_back({each.first, reader});
+      }
+      return inside;
     });
     if (gone == 0) break;
+    precedences.insert(precedences.end(), later.begin(), later.end());
     loop = network::order(network, precedences);
   }
   return loop;

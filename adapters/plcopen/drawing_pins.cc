@@ -43,6 +43,14 @@ void leave_out_usual_names(Node node, Element& block) {
   }
 }
 
+// The input of that name: with Beremiz an in-out parameter is an input and an output.
+Node input_of(Node node, std::string_view name) {
+  for (Node pin : xml::children(xml::child(node, "inputVariables"), "variable")) {
+    if (base::same_name(xml::attribute(pin, "formalParameter"), name)) return pin;
+  }
+  return Node();
+}
+
 }  // namespace
 
 void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
@@ -64,8 +72,13 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
   }
   if (all_.elements[block].operand.empty()) leave_out_usual_names(node, all_.elements[block]);
   for (Node pin : xml::children(xml::child(node, "outputVariables"), "variable")) {
-    all_.elements[block].outputs.push_back(
-        {std::string(xml::attribute(pin, "formalParameter")), negated(pin)});
+    const std::string name(xml::attribute(pin, "formalParameter"));
+    const Node in = name.empty() ? Node() : input_of(node, name);
+    if (in) {
+      raw.passed.push_back({name, xml::child(in, "connectionPointIn"), kNone});
+      continue;
+    }
+    all_.elements[block].outputs.push_back({name, negated(pin)});
     add_storage(pin, block);
     Node written = xml::find(pin, {"connectionPointOut", "expression"});
     if (!written) continue;  // a variable that stands at the pin
