@@ -43,10 +43,25 @@ void leave_out_usual_names(Node node, Element& block) {
   }
 }
 
+// Has the POU of the document that a box calls a VAR_IN_OUT of that name?
+bool has_in_out(Node box, std::string_view name) {
+  Node types = xml::child(xml::first_element(box.root()), "types");
+  for (Node pou : xml::children(xml::child(types, "pous"), "pou")) {
+    if (!base::same_name(xml::attribute(pou, "name"), xml::attribute(box, "typeName"))) continue;
+    for (Node list : xml::children(xml::child(pou, "interface"), "inOutVars")) {
+      for (Node each : xml::children(list, "variable")) {
+        if (base::same_name(xml::attribute(each, "name"), name)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 // The input of that name: with Beremiz an in-out parameter is an input and an output.
-Node input_of(Node node, std::string_view name) {
-  for (Node pin : xml::children(xml::child(node, "inputVariables"), "variable")) {
-    if (base::same_name(xml::attribute(pin, "formalParameter"), name)) return pin;
+Node in_out_of(Node box, std::string_view name) {
+  for (Node pin : xml::children(xml::child(box, "inputVariables"), "variable")) {
+    if (!base::same_name(xml::attribute(pin, "formalParameter"), name)) continue;
+    return has_in_out(box, name) ? pin : Node();
   }
   return Node();
 }
@@ -73,7 +88,7 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
   if (all_.elements[block].operand.empty()) leave_out_usual_names(node, all_.elements[block]);
   for (Node pin : xml::children(xml::child(node, "outputVariables"), "variable")) {
     const std::string name(xml::attribute(pin, "formalParameter"));
-    const Node in = name.empty() ? Node() : input_of(node, name);
+    const Node in = name.empty() ? Node() : in_out_of(node, name);
     if (in) {
       raw.passed.push_back({name, xml::child(in, "connectionPointIn"), kNone});
       continue;
