@@ -15,8 +15,8 @@ namespace ir {
 // `operand#rising` or `operand#falling` of such a name; "" of others.
 std::string_view edge_of_name(std::string_view name);
 
-// Do two versions' types differ in the names of such variables, or is there a hash collision?
-// Cost: each name of a member of a POU.
+// Do two versions' types differ in the names of such variables? Compares sums of hashes: a collision
+// would hide a difference. Cost: each name of a member of a POU.
 bool edges_differ(const TypeTable& old_types, const TypeTable& types);
 
 // Adds to `sources`, for each member of `next` the one of `old` that it was (RenameRules::kNone):

@@ -58,12 +58,15 @@ said 'R0404.*on elsewhere'
 # What the other machine writes to standard error is made visible.
 cat >rogue <<'SH'
 #!/bin/sh
+sleep 300 >/dev/null </dev/null &  # holds standard error, as the master of ssh's ControlPersist does
+echo $! >"$0.pid"
 printf 'motd \033]0;gone\007 \033[2J\r\nunfinished' >&2
 exit 255
 SH
 chmod +x rogue
 STVM_SSH=$work/rogue expect 7 stvm status --host plant7
 grep -q '^motd \\x1b\]0;gone\\x07 \\x1b\[2J$' err || fail "escape bytes of the other machine: $(cat -v err)"
+kill -0 "$(cat rogue.pid)" || fail "the tool waited for a process that holds the pipe"
 grep -q '^unfinished$' err || fail "its last line"
 grep -q 'R0404' err || fail "no refusal"
 expect 2 stvm status --host=-oProxyCommand=touch

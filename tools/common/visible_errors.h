@@ -24,7 +24,7 @@ class VisibleErrors {
 
  private:
   void run();
-  bool take();  // false: nothing more comes, or for now, at the end
+  bool take();  // false: there is nothing to read
   void show(size_t size);
 
   int in_ = -1;
