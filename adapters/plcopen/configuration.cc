@@ -1,6 +1,8 @@
 // Configurations, resources, tasks and instances; the project as a whole.
 #include <algorithm>
 #include <initializer_list>
+#include <set>
+#include <string>
 
 #include "adapters/plcopen/iec10.h"
 #include "adapters/plcopen/plcopen.h"
@@ -283,8 +285,23 @@ void report_misplaced(Node project, Reporter& report) {
   report_misplaced(xml::child(instances, "configurations"), {"configuration"}, report);
 }
 
+std::set<std::string> in_outs_of(Node project) {
+  std::set<std::string> out;
+  for (Node pou : xml::children(xml::find(project, {"types", "pous"}), "pou")) {
+    const std::string name = base::fold_name(xml::attribute(pou, "name"));
+    for (Node list : xml::children(xml::child(pou, "interface"), "inOutVars")) {
+      for (Node each : xml::children(list, "variable")) {
+        out.insert(name + "." + base::fold_name(xml::attribute(each, "name")));
+      }
+    }
+  }
+  return out;
+}
+
 void import_project(Node project, Reporter& report) {
   if (xml::is(project, "pou")) return import_pou(project, report);
+  const std::set<std::string> in_outs = in_outs_of(project);
+  report.set_in_outs(&in_outs);
   import_types(project, report);
   import_namespaces(project, report);
   Node configurations = xml::find(project, {"instances", "configurations"});
@@ -295,6 +312,7 @@ void import_project(Node project, Reporter& report) {
                     xml::child(project, "instances")}) {
     import_parts(part, report);
   }
+  report.set_in_outs(nullptr);
 }
 
 }  // namespace

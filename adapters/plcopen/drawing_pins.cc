@@ -1,5 +1,6 @@
 // Pins of blocks -> inputs and outputs of elements of the model, not linked yet.
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -43,33 +44,12 @@ void leave_out_usual_names(Node node, Element& block) {
   }
 }
 
-// Has the POU of the document that a box calls a VAR_IN_OUT of that name?
-bool has_in_out(Node box, std::string_view name) {
-  Node types = xml::child(xml::first_element(box.root()), "types");
-  for (Node pou : xml::children(xml::child(types, "pous"), "pou")) {
-    if (!base::same_name(xml::attribute(pou, "name"), xml::attribute(box, "typeName"))) continue;
-    for (Node list : xml::children(xml::child(pou, "interface"), "inOutVars")) {
-      for (Node each : xml::children(list, "variable")) {
-        if (base::same_name(xml::attribute(each, "name"), name)) return true;
-      }
-    }
-  }
-  return false;
-}
-
-// The input of that name: with Beremiz an in-out parameter is an input and an output.
-Node in_out_of(Node box, std::string_view name) {
-  for (Node pin : xml::children(xml::child(box, "inputVariables"), "variable")) {
-    if (!base::same_name(xml::attribute(pin, "formalParameter"), name)) continue;
-    return has_in_out(box, name) ? pin : Node();
-  }
-  return Node();
-}
-
 }  // namespace
 
 void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
   const bool by_position = is_operator(node);
+  const std::string_view type = xml::attribute(node, "typeName");
+  std::map<std::string, Node> in_outs;  // with Beremiz one is an input and an output of that name
   for (const char* list : {"inputVariables", "inOutVariables"}) {
     for (Node pin : xml::children(xml::child(node, list), "variable")) {
       network::Input input;
@@ -79,6 +59,8 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
       all_.elements[block].inputs.push_back(std::move(input));
       const uint32_t number = static_cast<uint32_t>(all_.elements[block].inputs.size() - 1);
       wait_for(block, number, pin, false);
+      const std::string_view name = xml::attribute(pin, "formalParameter");
+      if (list[2] != 'O' && report_.is_in_out(type, name)) in_outs[base::fold_name(name)] = pin;
       if (list[2] == 'O') {
         raw.passed.push_back({std::string(xml::attribute(pin, "formalParameter")),
                               xml::child(pin, "connectionPointIn"), kNone});
@@ -88,9 +70,8 @@ void Drawing::add_pins(Node node, uint32_t block, Raw& raw) {
   if (all_.elements[block].operand.empty()) leave_out_usual_names(node, all_.elements[block]);
   for (Node pin : xml::children(xml::child(node, "outputVariables"), "variable")) {
     const std::string name(xml::attribute(pin, "formalParameter"));
-    const Node in = name.empty() ? Node() : in_out_of(node, name);
-    if (in) {
-      raw.passed.push_back({name, xml::child(in, "connectionPointIn"), kNone});
+    if (const auto in = in_outs.find(base::fold_name(name)); in != in_outs.end()) {
+      raw.passed.push_back({name, xml::child(in->second, "connectionPointIn"), kNone});
       continue;
     }
     all_.elements[block].outputs.push_back({name, negated(pin)});

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <pugixml.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,6 +15,7 @@
 
 #include "adapters/xml/diagram_text.h"
 #include "adapters/xml/imported.h"
+#include "base/name_case.h"
 #include "base/result.h"
 
 namespace xml {
@@ -66,6 +68,12 @@ class Reporter {
   // Nodes that were made of others stand where these do.
   void set_origins(const std::unordered_map<const void*, Node>* origins) { origins_ = origins; }
   Node origin(Node node) const;
+  // VAR_IN_OUT of the document's POUs, `pou.name` as folded names; null: none is known.
+  void set_in_outs(const std::set<std::string>* in_outs) { in_outs_ = in_outs; }
+  bool is_in_out(std::string_view pou, std::string_view name) const {
+    return in_outs_ != nullptr &&
+           in_outs_->count(base::fold_name(pou) + "." + base::fold_name(name));
+  }
   void set_pou(std::string pou) { pou_ = std::move(pou), network_ = 0; }
   const std::string& pou() const { return pou_; }
   void set_network(uint32_t network) { network_ = network; }
@@ -90,6 +98,7 @@ class Reporter {
   const Document& document_;
   Imported& out_;
   const std::unordered_map<const void*, Node>* origins_ = nullptr;
+  const std::set<std::string>* in_outs_ = nullptr;
   const Taker* taker_ = nullptr;
   std::string pou_;
   uint32_t network_ = 0;

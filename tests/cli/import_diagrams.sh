@@ -331,4 +331,15 @@ body FBD '<block localId="1" typeName="EXECUTE"><inputVariables><variable formal
 wrong E1083 'holds statements of its own'
 expect 1 stc check small.xml
 said 'help: make them an ACTION, a function or a function block, and call that here'
+
+# A box with 20,000 inputs and as many outputs of their names: time follows the size of the document.
+pins() {  # LIST POINT
+  printf '<%s>' "$1"
+  seq 20000 | sed "s|.*|<variable formalParameter=\"a&\"><$2 /></variable>|"
+  printf '</%s>' "$1"
+}
+body FBD "<block localId=\"1\" typeName=\"F\" instanceName=\"f\">PINS</block>"
+{ sed 's/PINS.*//' small.xml; pins inputVariables connectionPointIn; pins outputVariables connectionPointOut
+  sed 's/.*PINS//' small.xml; } >large.xml
+expect 0 sh -c 'ulimit -t 6; exec "$1" import large.xml -o large' sh "$bin/stc"
 exit 0
