@@ -15,7 +15,7 @@ namespace ir {
 // `operand#rising` or `operand#falling` of such a name; "" of others.
 std::string_view edge_of_name(std::string_view name);
 
-// Do two versions' types differ in the names of such variables? Compares sums of hashes: a collision
+// Do two versions' types differ in the names of such variables? By sums of hashes, so a collision
 // would hide a difference. Cost: each name of a member of a POU.
 bool edges_differ(const TypeTable& old_types, const TypeTable& types);
 
