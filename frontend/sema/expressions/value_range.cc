@@ -119,9 +119,11 @@ class Ranges {
         out = {std::max(out.low, in.low), std::max(out.high, in.high)};
         return {std::min(out.low, most.low), std::min(out.high, most.high)};
       }
-      case stdlib::FunctionId::kSel:
-        return around({of(args[1], depth + 1).low, of(args[1], depth + 1).high,
-                       of(args[2], depth + 1).low, of(args[2], depth + 1).high});
+      case stdlib::FunctionId::kSel: {
+        const Limits no = of(args[1], depth + 1);
+        const Limits yes = of(args[2], depth + 1);
+        return around({no.low, no.high, yes.low, yes.high});
+      }
       case stdlib::FunctionId::kAdd:
       case stdlib::FunctionId::kSub:
       case stdlib::FunctionId::kMul:
