@@ -1,6 +1,12 @@
 #include "base/crc32c.h"
 
 #include <array>
+#include <cstring>
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+#include <immintrin.h>
+#endif
 
 namespace base {
 namespace {
@@ -26,10 +32,45 @@ constexpr Tables make_tables() {
 }
 constexpr Tables kTables = make_tables();
 
+#if defined(__x86_64__)
+
+bool has_instruction() {
+  static const bool kHas = [] {
+    unsigned a = 0;
+    unsigned b = 0;
+    unsigned c = 0;
+    unsigned d = 0;
+    return __get_cpuid(1, &a, &b, &c, &d) != 0 && (c & bit_SSE4_2) != 0;
+  }();
+  return kHas;
+}
+
+__attribute__((target("sse4.2"))) uint32_t crc32c_x86(ByteSpan bytes) {
+  uint64_t crc = 0xffffffffu;
+  size_t at = 0;
+  for (; at + 8 <= bytes.size(); at += 8) {
+    uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, 8);
+    crc = _mm_crc32_u64(crc, word);
+  }
+  auto rest = static_cast<uint32_t>(crc);
+  for (; at < bytes.size(); ++at) rest = _mm_crc32_u8(rest, bytes[at]);
+  return ~rest;
+}
+
+#endif
+
 }  // namespace
 
-// Eight bytes a step.
 uint32_t crc32c(ByteSpan bytes) {
+#if defined(__x86_64__)
+  if (has_instruction()) return crc32c_x86(bytes);
+#endif
+  return crc32c_portable(bytes);
+}
+
+// Eight bytes a step.
+uint32_t crc32c_portable(ByteSpan bytes) {
   uint32_t crc = 0xffffffffu;
   size_t at = 0;
   for (; at + 8 <= bytes.size(); at += 8) {

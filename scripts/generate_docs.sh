@@ -46,8 +46,8 @@ done
   done
 } >"$out/timing.md"
 
-"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/iec_61131_3.txt" >"$out/conformance.md"
-"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/language.txt" >"$out/language.md"
-"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/online_change.txt" >"$out/online_change.md"
-"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/fleet.txt" >"$out/fleet.md"
-"$root/scripts/conformance.sh" "$root" "$root/tests/conformance/tasks_and_io.txt" >"$out/tasks_and_io.md"
+"$root/scripts/conformance.py" "$root" "$root/tests/conformance/iec_61131_3.txt" >"$out/conformance.md"
+"$root/scripts/conformance.py" "$root" "$root/tests/conformance/language.txt" >"$out/language.md"
+"$root/scripts/conformance.py" "$root" "$root/tests/conformance/online_change.txt" >"$out/online_change.md"
+"$root/scripts/conformance.py" "$root" "$root/tests/conformance/fleet.txt" >"$out/fleet.md"
+"$root/scripts/conformance.py" "$root" "$root/tests/conformance/tasks_and_io.txt" >"$out/tasks_and_io.md"

@@ -21,17 +21,40 @@ bool in_union(const ir::Image& image, const std::string& path, std::map<std::str
   return false;
 }
 
-Values values_of(const ir::Image& image, std::span<const uint8_t> memory) {
-  Values out;
+// A variable of an image: all but what it holds.
+struct Leaf {
+  std::string path;
+  ir::Symbol symbol;
+  Value value;  // its text is empty
+};
+
+// By path; made once for each of the last images.
+const std::vector<Leaf>& leaves_of(const ir::VerifiedImage& verified) {
+  static std::map<base::Digest, std::vector<Leaf>> known;
+  constexpr size_t kMost = 16;
+  if (const auto found = known.find(verified.digest()); found != known.end()) return found->second;
+  if (known.size() == kMost) known.clear();
+  std::vector<Leaf>& leaves = known[verified.digest()];
+  const ir::Image& image = verified.image();
   std::map<std::string, bool> unions;
   ir::for_each_leaf(image, [&](const std::string& path, const ir::Symbol& symbol) {
-    Value& value = out[path];
-    value.type = image.types.text(symbol.type);
-    value.text = ir::format_value(image, symbol, memory);
-    value.retain = symbol.retain;
+    Value value{image.types.text(symbol.type), "", false, symbol.retain};
     value.comparable = !symbol.constant && !image.types.is_reference(symbol.type) &&
                        !in_union(image, path, unions);
+    leaves.push_back({path, symbol, std::move(value)});
   });
+  std::sort(leaves.begin(), leaves.end(),
+            [](const Leaf& a, const Leaf& b) { return a.path < b.path; });
+  return leaves;
+}
+
+Values values_of(const ir::VerifiedImage& image, std::span<const uint8_t> memory) {
+  Values out;
+  for (const Leaf& leaf : leaves_of(image)) {
+    Value value = leaf.value;
+    value.text = ir::format_value(image.image(), leaf.symbol, memory);
+    out.emplace_hint(out.end(), leaf.path, std::move(value));
+  }
   return out;
 }
 
@@ -55,7 +78,7 @@ Snapshot::Snapshot(vm::Controller& controller) : image_(controller.verified()) {
 
 const Values& Snapshot::values() const {
   if (values_) return *values_;
-  values_ = values_of(image_.image(), data_);
+  values_ = values_of(image_, data_);
   for (const std::string& path : forced_) {
     if (const auto found = values_->find(path); found != values_->end()) {
       found->second.comparable = false;
@@ -86,7 +109,7 @@ void check_kept(const Snapshot& before, const Snapshot& now) {
 }
 
 Values retained_values(vm::Controller& controller) {
-  Values all = values_of(controller.image(), controller.memory().view());
+  Values all = values_of(controller.verified(), controller.memory().view());
   std::erase_if(all, [](const auto& row) { return !row.second.retain || !row.second.comparable; });
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/crc32c.h"
 #include "base/hash.h"
 #include "base/sha256.h"
 
@@ -124,6 +125,16 @@ TEST(Sha256, WithAndWithoutProcessorInstructions) {
   sha256_blocks_portable(portable, data.data(), 5);
   if (!sha256_blocks_x86(fast, data.data(), 5)) GTEST_SKIP() << "not on this processor";
   EXPECT_EQ(portable, fast);
+}
+
+TEST(Crc32c, WithAndWithoutProcessorInstructions) {
+  EXPECT_EQ(crc32c(as_bytes("123456789")), 0xe3069283u);
+  std::array<uint8_t, 70> data{};
+  for (size_t i = 0; i < data.size(); ++i) data[i] = static_cast<uint8_t>(i * 37 + 11);
+  for (size_t size = 0; size <= data.size(); ++size) {
+    const ByteSpan part = ByteSpan(data).first(size);
+    EXPECT_EQ(crc32c(part), crc32c_portable(part)) << size;
+  }
 }
 
 }  // namespace
