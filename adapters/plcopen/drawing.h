@@ -130,10 +130,12 @@ class Drawing {
     size_t before;   // the part that follows it
     int32_t y;
     network::Network network;
+    bool disabled = false;  // behind the labels of its row
   };
   void place_remarks(const std::vector<network::Part>& parts, network::Body& body);
   std::vector<Inserted> disabled_networks(const std::vector<int32_t>& ends);
-  void place_remark(Remark& remark, network::Network& own);
+  // Null, or the label that `own` had: a network has one, so that one gets a network of its own.
+  static std::optional<network::Text> place_remark(Remark& remark, network::Network& own);
   static bool does_something(const network::Network& part);
   static void drop_idle(network::Body& body);
   Node node_of(const network::Part& part) const;

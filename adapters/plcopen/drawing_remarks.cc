@@ -1,6 +1,9 @@
 // Titles, comments and labels of a drawing, and networks that are disabled -> heads of networks.
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "adapters/plcopen/drawing.h"
 #include "frontend/fbd/read.h"
@@ -18,7 +21,8 @@ std::vector<Drawing::Inserted> Drawing::disabled_networks(const std::vector<int3
   for (const Remark& remark : remarks_) {
     if (!remark.disabled) continue;
     const bool last = ends.empty() || remark.y > ends.back();
-    Inserted made{last ? ends.size() : network::place_between(ends, remark.y), remark.row, {}};
+    Inserted made{
+        last ? ends.size() : network::place_between(ends, remark.y), remark.row, {}, true};
     const std::string text = xml::text_of(remark.disabled);
     base::Diagnostics unheard;  // nobody looks at what is disabled
     network::Body body = xml::attribute(remark.disabled, "language") == "LADDER"
@@ -32,18 +36,18 @@ std::vector<Drawing::Inserted> Drawing::disabled_networks(const std::vector<int3
   return out;
 }
 
-void Drawing::place_remark(Remark& remark, network::Network& own) {
+std::optional<network::Text> Drawing::place_remark(Remark& remark, network::Network& own) {
   if (remark.title && own.title.empty()) {
     own.title = network::title_of(remark.text);
     own.headed = own.headed || !own.title.empty();
   } else if (!remark.label) {
     own.comments.push_back(std::move(remark.text));
-  } else if (own.label.empty()) {
-    own.label.text = std::move(remark.text);
   } else {
-    fail(Code::kXmlBody, remark.node,
-         "the labels `" + own.label.text + "` and `" + remark.text + "` belong to one network");
+    const bool has_one = !own.label.empty();
+    network::Text before = std::exchange(own.label, network::Text{std::move(remark.text), {}});
+    if (has_one) return before;
   }
+  return std::nullopt;
 }
 
 void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Body& body) {
@@ -53,22 +57,28 @@ void Drawing::place_remarks(const std::vector<network::Part>& parts, network::Bo
   for (size_t i = 0; i < inserted.size(); ++i) rows.emplace(inserted[i].y, i);
   for (Remark& remark : remarks_) {
     if (remark.disabled) continue;
+    const auto insert_label = [&](size_t before, network::Text label) {
+      inserted.push_back({before, remark.row, {}});
+      inserted.back().network.label = std::move(label);
+    };
     const auto row = rows.find(remark.row);
     if (row != rows.end()) {
-      place_remark(remark, inserted[row->second].network);
+      auto above = place_remark(remark, inserted[row->second].network);
+      if (above) insert_label(inserted[row->second].before, *std::move(above));
       continue;
     }
     // A label below everything is the end of the body.
     if (remark.label && !ends.empty() && remark.y > ends.back()) {
-      inserted.push_back({ends.size(), remark.row, {}});
-      inserted.back().network.label.text = std::move(remark.text);
+      insert_label(ends.size(), {std::move(remark.text), {}});
       continue;
     }
     if (body.networks.empty()) body.networks.emplace_back();
-    place_remark(remark, body.networks[network::place_between(ends, remark.y)]);
+    const size_t below = network::place_between(ends, remark.y);
+    auto above = place_remark(remark, body.networks[below]);
+    if (above) insert_label(below, *std::move(above));
   }
   std::ranges::stable_sort(inserted, [](const Inserted& a, const Inserted& b) {
-    return std::pair(a.before, a.y) < std::pair(b.before, b.y);
+    return std::tuple(a.before, a.y, a.disabled) < std::tuple(b.before, b.y, b.disabled);
   });
   std::vector<network::Network> all;
   auto next = inserted.begin();

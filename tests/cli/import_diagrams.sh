@@ -153,7 +153,8 @@ wrong E1083 'several of negated, edge and storage at once'
 body FBD '<jump localId="1" label="no name"/>'
 wrong E1074 '`no name` is no name'
 body FBD '<label localId="1" label="A"/><label localId="2" label="B"/><jump localId="3" label="A"/>'
-wrong E1083 'the labels `A` and `B` belong to one network'
+expect 0 stc import small.xml -o operand --force
+[ "$(sed -n '/^FBD/,/^END_FBD/p' operand/P.st | tr -d ' \n')" = "FBDA:B:JMPA;END_FBD" ] || fail "two labels at one network"
 body FBD "$(in_variable 1 b)"
 good
 said 'warning\[W0072\]: POU P, network 1: nothing takes what this network computes'

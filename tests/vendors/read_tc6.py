@@ -2,6 +2,7 @@
 """read_tc6.py DOCUMENT: PLCopen XML (TC6 2.01) as Structured Text and charts as text, by what the schema
 says of its elements and nothing of stc's. It reads what programs of drawings are made of; anything
 else is an error, so that nothing is left out unseen. addData is not read."""
+import re
 import sys
 import xml.etree.ElementTree as tree
 
@@ -56,7 +57,7 @@ def value_of(node):
 
 
 SECTIONS = {"inputVars": "VAR_INPUT", "outputVars": "VAR_OUTPUT", "inOutVars": "VAR_IN_OUT", "localVars": "VAR",
-            "tempVars": "VAR_TEMP", "externalVars": "VAR_EXTERNAL"}
+            "tempVars": "VAR_TEMP", "externalVars": "VAR_EXTERNAL", "globalVars": "VAR_GLOBAL"}
 
 
 def declarations(interface, types):
@@ -64,18 +65,24 @@ def declarations(interface, types):
     for section in children(interface):
         if name_of(section) in ("documentation", "addData", "returnType"):
             continue
-        if name_of(section) not in SECTIONS:
-            raise Unread(f"section {name_of(section)}")
-        words = [word.upper() for word in ("constant", "retain") if flag(section, word)]
-        out.append(" ".join([SECTIONS[name_of(section)]] + words))
-        for one in children(section, "variable"):
-            kind = type_of(child(one, "type"))
-            types[one.get("name").upper()] = kind
-            start = child(one, "initialValue")
-            value = "" if start is None else f" := {value_of(start)}"
-            place = f" AT {one.get('address')}" if one.get("address") else ""
-            out.append(f"  {one.get('name')}{place} : {kind}{value};")
-        out.append("END_VAR")
+        out += variables(section, types)
+    return out
+
+
+def variables(section, types):
+    out = []
+    if name_of(section) not in SECTIONS:
+        raise Unread(f"section {name_of(section)}")
+    words = [word.upper() for word in ("constant", "retain") if flag(section, word)]
+    out.append(" ".join([SECTIONS[name_of(section)]] + words))
+    for one in children(section, "variable"):
+        kind = type_of(child(one, "type"))
+        types[one.get("name").upper()] = kind
+        start = child(one, "initialValue")
+        value = "" if start is None else f" := {value_of(start)}"
+        place = f" AT {one.get('address')}" if one.get("address") else ""
+        out.append(f"  {one.get('name')}{place} : {kind}{value};")
+    out.append("END_VAR")
     return out
 
 
@@ -85,8 +92,9 @@ BOOLS = {"AND", "OR", "XOR", "NOT", "GT", "GE", "EQ", "LE", "LT", "NE"}
 
 
 class Diagram:
-    """Its elements are done one after the other: networks from top to bottom, those of a network as
-    the document has them, which executionOrderId must not contradict."""
+    """Its elements are done one after the other: by executionOrderId where all that do something have
+    one, which the order of the document must not contradict; else networks from top to bottom, those
+    of a network as the document has them."""
 
     def __init__(self, body, types, scope):
         self.types = types
@@ -142,28 +150,41 @@ class Diagram:
 
     def store(self, one, target, value, condition=None):
         storage = one.get("storage", "none")
-        if one.get("edge", "none") != "none":
-            raise Unread("an edge")
         value = f"NOT ({value})" if flag(one, "negated") else value
+        value = self.edge(one, value)
         line = f"{target} := {value};"
         if storage in ("set", "reset"):
             line = f"IF {value} THEN {target} := {'TRUE' if storage == 'set' else 'FALSE'}; END_IF;"
         self.lines.append(f"IF {condition} THEN {line} END_IF;" if condition else line)
 
+    def edge(self, one, value):
+        """A value, or whether it has just become TRUE, or FALSE: since it was looked at last."""
+        kind = one.get("edge", "none")
+        if kind == "none":
+            return value
+        before, name = self.temporary("BOOL"), self.temporary("BOOL")
+        now, then = ("", "NOT ") if kind == "rising" else ("NOT ", "")
+        self.lines.append(f"{name} := {now}({value}) AND {then}{before}; {before} := {value};")
+        return name
+
     def result_type(self, word, arguments):
         if word in BOOLS:
             return "BOOL"
         for argument in arguments:
-            known = self.types.get(argument.upper()) or self.scope.get(argument)
-            if known:
-                return known
+            for name in re.findall(r"[A-Za-z_]\w*", argument):
+                known = self.types.get(name.upper()) or self.scope.get(name)
+                if known:
+                    return known
         raise Unread(f"the type of {word}({', '.join(arguments)})")
 
     def block(self, one):
         local, kind, instance = one.get("localId"), one.get("typeName"), one.get("instanceName")
-        if children(child(one, "inOutVariables")):
-            raise Unread("an in-out variable of a block")
         pins, enable = [], None
+        for pin in children(child(one, "inOutVariables"), "variable"):
+            links = self.links(pin)
+            if not instance or len(links) != 1 or flag(pin, "negated"):
+                raise Unread("an in-out that is not one variable of an instance")
+            pins.append((pin.get("formalParameter"), self.value(links[0])))
         for pin in children(child(one, "inputVariables"), "variable"):
             links = self.links(pin)
             if not links:
@@ -172,8 +193,9 @@ class Diagram:
                 raise Unread("several values at a pin")
             value = " OR ".join(self.value(link) for link in links)
             value = f"NOT ({value})" if flag(pin, "negated") else value
-            if pin.get("edge", "none") != "none" or pin.get("storage", "none") != "none":
-                raise Unread("an edge at a pin")
+            if pin.get("storage", "none") != "none":
+                raise Unread("a pin that sets or resets")
+            value = self.edge(pin, value)
             if pin.get("formalParameter") == "EN":
                 enable = self.temporary("BOOL")
                 self.lines.append(f"{enable} := {value};")
@@ -206,11 +228,12 @@ class Diagram:
         if kind in ("leftPowerRail", "rightPowerRail", "comment"):
             return
         if kind == "contact":
-            if one.get("edge", "none") != "none" or one.get("storage", "none") != "none":
-                raise Unread("an edge")
-            name = self.temporary("BOOL")
+            if one.get("storage", "none") != "none":
+                raise Unread("a contact that sets or resets")
             negated = "NOT " if flag(one, "negated") else ""
-            self.lines.append(f"{name} := ({self.power(one)}) AND {negated}({text_of(child(one, 'variable'))});")
+            closed = self.edge(one, f"{negated}({text_of(child(one, 'variable'))})")
+            name = self.temporary("BOOL")
+            self.lines.append(f"{name} := ({self.power(one)}) AND {closed};")
             self.values[(local, "")] = name
         elif kind == "coil":
             name = self.temporary("BOOL")
@@ -226,12 +249,31 @@ class Diagram:
                 raise Unread("an outVariable without one connection")
             source = links[0].get("refLocalId")
             self.store(one, text_of(child(one, "expression")), self.value(links[0]), self.enabled.get(source))
+        elif kind == "inOutVariable":
+            if flag(one, "negatedIn") or flag(one, "negatedOut") or self.links(one):
+                raise Unread("an inOutVariable that is negated or written")
+            self.values[(local, "")] = text_of(child(one, "expression"))
         elif kind == "block":
             self.block(one)
+        elif kind == "label":
+            self.lines.append(f"{one.get('label')}:")
+        elif kind == "jump":
+            self.lines.append(f"IF {self.power(one)} THEN JMP {one.get('label')}; END_IF;")
+        elif kind == "return":
+            self.lines.append(f"IF {self.power(one)} THEN RETURN; END_IF;")
         else:
             raise Unread(f"an element {kind}")
 
     def run(self):
+        doing = [one for one in self.elements.values() if name_of(one) not in
+                 ("leftPowerRail", "rightPowerRail", "comment", "label", "inVariable", "inOutVariable")]
+        orders = [int(one.get("executionOrderId") or 0) for one in doing]
+        if orders != sorted(orders):
+            raise Unread("an order of execution other than that of the document")
+        if 0 not in orders:
+            for one in self.elements.values():
+                self.element(one)
+            return self.lines
         networks = {}
         for local, network in self.network_of().items():
             networks.setdefault(network, []).append(self.elements[local])
@@ -240,9 +282,6 @@ class Diagram:
             placed = [one for one in elements if name_of(one) not in ("leftPowerRail", "rightPowerRail", "comment")]
             return min(int(child(one, "position").get("y")) for one in placed or elements)
         for elements in sorted(networks.values(), key=top):
-            orders = [int(one.get("executionOrderId")) for one in elements if one.get("executionOrderId")]
-            if orders != sorted(orders):
-                raise Unread("an order of execution other than that of the document")
             for one in elements:
                 self.element(one)
         return self.lines
@@ -363,15 +402,35 @@ def pou(one):
     return [head] + declared + temporary + lines + inside + [f"END_{word}"]
 
 
+def configuration(one):
+    out = [f"CONFIGURATION {one.get('name')}"]
+    for section in children(one, "globalVars"):
+        out += variables(section, {})
+    for resource in children(one, "resource"):
+        out.append(f"RESOURCE {resource.get('name')} ON PLC")
+        for section in children(resource, "globalVars"):
+            out += variables(section, {})
+        programs = [(None, each) for each in children(resource, "pouInstance")]
+        for task in children(resource, "task"):
+            when = f"INTERVAL := {task.get('interval')}" if task.get("interval") else f"SINGLE := {task.get('single')}"
+            out.append(f"  TASK {task.get('name')}({when}, PRIORITY := {task.get('priority')});")
+            programs += [(task.get("name"), each) for each in children(task, "pouInstance")]
+        for task, each in programs:
+            with_task = f" WITH {task}" if task else ""
+            out.append(f"  PROGRAM {each.get('name')}{with_task} : {each.get('typeName')};")
+        out.append("END_RESOURCE")
+    return out + ["END_CONFIGURATION"]
+
+
 def main(path):
     root = tree.parse(path).getroot()
     out = []
     if children(child(child(root, "types"), "dataTypes")):
         raise Unread("types")
-    if children(child(child(root, "instances"), "configurations")):
-        raise Unread("configurations")
     for one in children(child(child(root, "types"), "pous"), "pou"):
         out += pou(one)
+    for one in children(child(child(root, "instances"), "configurations")):
+        out += configuration(one)
     print("\n".join(out))
 
 
