@@ -20,7 +20,7 @@ compare() {  # compare WHAT FOLDER OF: the sources in it; OF: what MAIN's variab
     state second.st $scans
     cmp -s mine out || fail "seed $seed, $1, $scans scans: $(paste mine out | tr '\n' ' ')"
   done
-  grep -q "^${of}n=[1-9]" out && ! grep -q "^${of}sum=0" out || fail "seed $seed, $1: nothing happens"
+  grep -q "^${of}n=[1-9]" out || fail "seed $seed, $1: nothing happens"
 }
 seed=$first
 while [ "$seed" -lt $((first + count)) ]; do

@@ -30,7 +30,12 @@ namespace {
 using differential::Finding;
 using differential::Program;
 
+// Of processor time; sanitizers take ten times as long.
+#ifdef STC_SANITIZED_HEAP
+constexpr unsigned kSecondsPerProgram = 200;
+#else
 constexpr unsigned kSecondsPerProgram = 20;
+#endif
 
 struct Options {
   std::vector<uint64_t> numbers;
