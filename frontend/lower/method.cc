@@ -5,6 +5,7 @@
 #include "frontend/lower/call_code.h"
 #include "frontend/lower/method_code.h"
 #include "frontend/lower/references.h"
+#include "frontend/parse/foreign_words.h"
 #include "frontend/sema/calls/calls.h"
 #include "frontend/sema/objects/objects.h"
 
@@ -161,9 +162,10 @@ void MethodCode::bare_call(ExprId id) {
   const Expr& expr = tree_[id];
   if (!ask<Objects>().names_method(expr)) {
     if (expr.kind == ExprKind::kMember && ask<Objects>().damaged(expr.operand)) return;
+    const std::string fix = instead_of(expr.kind == ExprKind::kName ? expr.name.text : "");
     error(DiagnosticCode::kNoEffect, expr.span,
           "this is no statement: nothing is assigned or called",
-          "write `:=` and a value, or `()` to call");
+          fix.empty() ? "write `:=` and a value, or `()` to call" : fix);
     return;
   }
   Expr call;

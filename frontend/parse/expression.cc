@@ -191,6 +191,12 @@ ExprId Parser::parse_global_name() {
   expr.kind = ExprKind::kName;
   expr.global = true;
   base::SourcePos begin = {take().begin};
+  if (kind() == TokenKind::kInteger) {
+    report(Code::kExpectedExpression, {begin, {current_->begin + current_->length}},
+           "a REAL has digits on both sides of its point",
+           "write `0." + std::string(text(*current_)) + '`');
+    return error_expression();
+  }
   expr.name = parse_name("global variable");
   if (panic_) return error_expression();
   expr.span = span_from(begin);

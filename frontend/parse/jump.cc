@@ -15,7 +15,7 @@ bool Parser::parse_soft_statement() {
   if (kind() == TokenKind::kTry) {
     parse_try();
   } else if (next_kind() == TokenKind::kColon) {
-    parse_label();
+    at_misplaced_declaration() ? reject_declaration() : parse_label();
   } else if (kind() == TokenKind::kJump && is_name(next_kind())) {
     parse_jump_to_label();
   } else if ((kind() == TokenKind::kMock || kind() == TokenKind::kMockFunction) &&
@@ -33,6 +33,36 @@ void Parser::reject_label() {
   take();
   if (!accept(TokenKind::kColon)) accept(TokenKind::kSemicolon);
   panic_ = false;
+}
+
+// `a : INT;` among statements: a type stands behind the colon, in its row.
+bool Parser::at_misplaced_declaration() const {
+  const Token& colon = current_[1];
+  const Token& type = current_[2];
+  const uint32_t from = colon.begin + 1;
+  if (text_.substr(from - base_, type.begin - from).find('\n') != std::string_view::npos)
+    return false;
+  switch (type.kind) {
+    case TokenKind::kArray:
+    case TokenKind::kPointer:
+    case TokenKind::kReference:
+    case TokenKind::kRefTo:
+    case TokenKind::kStringType:
+    case TokenKind::kWideStringType:
+      return true;
+    default:
+      // TIME() is a call.
+      return is_elementary_name(text(type)) && current_[3].kind != TokenKind::kLeftParen;
+  }
+}
+
+void Parser::reject_declaration() {
+  const std::string name(text(*current_));
+  report(Code::kExpectedStatement, {{current_->begin}, {current_[2].begin + current_[2].length}},
+         "variables are declared in front of the statements",
+         "write it between VAR and END_VAR: `VAR " + name + " : " + std::string(text(current_[2])) +
+             " ... END_VAR`");
+  skip_to_statement_end();
 }
 
 void Parser::parse_label() {

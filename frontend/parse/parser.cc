@@ -4,6 +4,7 @@
 
 #include "base/diagnostics_render.h"
 #include "base/limits.h"
+#include "frontend/parse/foreign_words.h"
 #include "frontend/parse/parse.h"
 #include "ir/types/types.h"
 
@@ -60,7 +61,8 @@ bool Parser::expect(TokenKind wanted, const char* where) {
   base::SourceSpan span = current_->span();
   if (on_new_line()) span = {last_end(), {last_end().offset + 1}};
   report(Code::kExpected, span,
-         "expected `" + what + "` " + where + ", found " + describe(*current_));
+         "expected `" + what + "` " + where + ", found " + describe(*current_),
+         is_name(kind()) ? instead_of(text(*current_)) : "");
   return false;
 }
 

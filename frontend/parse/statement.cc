@@ -1,3 +1,4 @@
+#include "frontend/parse/foreign_words.h"
 #include "frontend/parse/parser.h"
 #include "frontend/parse/token_sets.h"
 #include "ir/types/types.h"
@@ -146,8 +147,10 @@ void Parser::finish_simple(ExprId left, base::SourcePos begin) {
              "this is no statement: nothing is assigned or called",
              "write `:=` and a value, or `()` to call");
     } else {
-      report_here(Code::kExpected, "expected `:=` or `(` after " + describe(current_[-1]) +
-                                       ", found " + describe(*current_));
+      report_here(
+          Code::kExpected,
+          "expected `:=` or `(` after " + describe(current_[-1]) + ", found " + describe(*current_),
+          statement_fix(current_[-1]));
     }
     Stmt stmt;
     stmt.kind = StmtKind::kError;
@@ -155,6 +158,14 @@ void Parser::finish_simple(ExprId left, base::SourcePos begin) {
     add_statement(stmt);
   }
   finish_statement("statement");
+}
+
+// The way out where a statement goes on behind `word` with a name.
+std::string Parser::statement_fix(const Token& word) const {
+  const std::string name(text(word));
+  if (!is_elementary_name(name) || !is_name(kind())) return instead_of(name);
+  const std::string declared = std::string(text(*current_)) + " : " + name + ";";
+  return "declare variables in front of the statements: `VAR " + declared + " END_VAR`";
 }
 
 void Parser::parse_jump(StmtKind statement) {

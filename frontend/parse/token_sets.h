@@ -49,6 +49,9 @@ constexpr bool is_var_start(TokenKind kind) {
   return kind >= TokenKind::kVar && kind <= TokenKind::kVarTemp;
 }
 
+// INT, TIME, ...; STRING is a keyword.
+bool is_elementary_name(std::string_view name);
+
 // Keywords that begin a declaration at file level and cannot stand in a body.
 constexpr bool is_file_level_start(TokenKind kind) {
   return is_pou_start(kind) || kind == TokenKind::kType || kind == TokenKind::kConfiguration ||

@@ -6,16 +6,12 @@
 
 namespace frontend {
 
-namespace {
-
 bool is_elementary_name(std::string_view name) {
   for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
     if (ir::same_name(name, ir::elementary_name(static_cast<ir::Kind>(i)))) return true;
   }
   return false;
 }
-
-}  // namespace
 
 void Parser::parse_types(Range32 attributes) {
   const Token opening = take();
