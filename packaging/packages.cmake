@@ -74,12 +74,14 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_STC_PACKAGE_NAME stc)
 set(CPACK_DEBIAN_STVM_PACKAGE_NAME stvm)
-set(CPACK_DEBIAN_STVM_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/postinst)
+set(scripts ${CMAKE_SOURCE_DIR}/packaging/debian)
+set(CPACK_DEBIAN_STVM_PACKAGE_CONTROL_EXTRA ${scripts}/postinst ${scripts}/prerm ${scripts}/postrm)
 set(CPACK_DEBIAN_STVM_PACKAGE_DEPENDS systemd)
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_NAME stvm-agent)
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_DEPENDS "stvm (= ${CPACK_PACKAGE_VERSION})")
 set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_RECOMMENDS curl)
-set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/agent/postinst)
+set(CPACK_DEBIAN_STVM-AGENT_PACKAGE_CONTROL_EXTRA ${scripts}/agent/postinst ${scripts}/agent/prerm
+    ${scripts}/agent/postrm)
 set(CPACK_DEBIAN_STC_DESCRIPTION "compiler of IEC 61131-3 programs
 Structured Text, ladder, function block diagrams, charts and instruction
 lists become an image for stvm, a soft PLC whose running program can be

@@ -171,3 +171,23 @@ expect 0 stc check marked
 printf '\n[warnings] # again\nW0013 = "off"\n' >>marked/stc.toml
 expect 7 stc check marked
 said '^marked/stc.toml:5:11: error\[R0506\]: table `warnings` is given twice'
+
+# The manifest of docs/PROJECT.md passes as it is printed; and with what needs a program, for one that has it.
+mkdir page page/src page/lib
+sed -n '/^```toml$/,/^```$/{/^```/d;p}' "$source_dir/docs/PROJECT.md" >page/stc.toml
+sed -i '/^\[units\]/,$d; /^\[devices/,$d' page/stc.toml
+printf 'PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n' >page/src/main.st
+: >page/lib/empty.st
+expect 0 stc check page
+cat >page/src/main.st <<'ST'
+PROGRAM Main
+VAR n : INT; well : BOOL := TRUE; alarm : BOOL; o AT %QX0.0 : BOOL; w AT %QW2 : WORD; r AT %QD8 : REAL; b AT %QB6 : BYTE; END_VAR
+  n := n + 1; o := alarm; w := INT_TO_WORD(n); r := n; b := 1; well := n > 0;
+END_PROGRAM
+CONFIGURATION Plant
+  RESOURCE Line ON PLC TASK Fast(INTERVAL := T#10ms, PRIORITY := 1); PROGRAM Main WITH Fast : Main; END_RESOURCE
+END_CONFIGURATION
+ST
+sed 's/^# //' page/stc.toml >all.toml && mv all.toml page/stc.toml
+expect 0 stc check page
+grep -qE '^(resource|safe|health) = ' page/stc.toml || fail "nothing of the page needs a program any more"

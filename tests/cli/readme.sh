@@ -13,3 +13,11 @@ expect 0 stvm change examples/bottling_line_v2 --dir plc --yes --allow-loss
 said 'releases missed'
 expect 0 stvm undo --dir plc
 expect 0 stvm stop --dir plc
+
+# Those of the examples' page: the line and its change.
+set -- $(grep '^stvm serve .*bottling_line$' "$source_dir/examples/README.md")
+[ "$3 $4" = '--dir state' ] && [ -d "$source_dir/$5" ] || fail "examples: $*"
+serve state "$source_dir/$5"
+expect 0 $(grep '^stvm change .*bottling_line_v2$' "$source_dir/examples/README.md")
+said 'releases missed'
+expect 0 stvm stop --dir state

@@ -6,9 +6,10 @@
 plc=/var/lib/stvm/line
 
 # As the README has it.
-expect 0 there sh -c 'apt-get install -y --no-install-recommends /root/stc_*.deb /root/stvm_*.deb'
-expect 0 there stc build /usr/share/doc/stc/examples/bottling_line -o /etc/stvm/line.img
-expect 0 there systemctl enable --now stvm@line
+grep -A3 '^sudo apt install' "$source_dir/README.md" | sed '/^```/,$d
+  s/sudo apt install/apt-get install -y --no-install-recommends/; s/sudo //; s#build/release/#root/#g' >commands
+[ "$(wc -l <commands)" -eq 3 ] || fail "the commands of the README: $(cat commands)"
+expect 0 there sh -ec "cd /; $(cat commands)"
 
 # It is ready when the command ends, as a user of its own, and root's tools talk to it.
 expect 0 there systemctl show stvm@line -p ActiveState -p User -p StatusText
@@ -70,6 +71,14 @@ said '^Result=success$'
 expect 7 there stvm status --dir $plc
 said 'R0404'
 
-# The package goes; what the controller knows stays.
+# The package goes, and with it a controller that runs; what it knows stays.
+expect 0 there systemctl start stvm@line
 expect 0 there apt-get remove -y stvm
+expect 0 there systemctl show stvm@line -p ActiveState -p Result
+said '^ActiveState=inactive$'
+said '^Result=success$'
+expect 0 there test -e $plc/journal
+expect 0 there test -h /etc/systemd/system/multi-user.target.wants/stvm@line.service
+expect 0 there apt-get purge -y stvm
+expect 1 there test -h /etc/systemd/system/multi-user.target.wants/stvm@line.service
 expect 0 there test -e $plc/journal
