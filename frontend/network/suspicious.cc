@@ -43,30 +43,6 @@ const PoweredBox* powered_box(std::string_view type) {
   return nullptr;
 }
 
-// The operand when it is the same place whatever else is going on (no index varies); otherwise "".
-std::string fixed_place(std::string_view operand) {
-  std::string out;
-  bool index = false;
-  for (const char c : operand) {
-    if (c == ' ' || c == '\t') continue;
-    if (c == '[') index = true;
-    if (c == '^' || c == '(' || (index && is_name_start(c))) return {};
-    if (c == ']') index = false;
-    out += c;
-  }
-  return ir::fold_name(out);
-}
-
-bool may_skip(const Body& body) {
-  for (const Network& network : body.networks) {
-    if (network.disabled) continue;
-    for (const Element& element : network.elements) {
-      if (element.kind == Kind::kJump || element.kind == Kind::kReturn) return true;
-    }
-  }
-  return false;
-}
-
 // Each variable once: at its second coil.
 void report_second_coils(const Body& body, base::Diagnostics& diagnostics) {
   struct Coils {
@@ -135,6 +111,29 @@ void report_boxes_without_power(const Body& body, base::Diagnostics& diagnostics
 
 }  // namespace
 
+std::string fixed_place(std::string_view operand) {
+  std::string out;
+  bool index = false;
+  for (const char c : operand) {
+    if (c == ' ' || c == '\t') continue;
+    if (c == '[') index = true;
+    if (c == '^' || c == '(' || (index && is_name_start(c))) return {};
+    if (c == ']') index = false;
+    out += c;
+  }
+  return ir::fold_name(out);
+}
+
+bool may_skip(const Body& body) {
+  for (const Network& network : body.networks) {
+    if (network.disabled) continue;
+    for (const Element& element : network.elements) {
+      if (element.kind == Kind::kJump || element.kind == Kind::kReturn) return true;
+    }
+  }
+  return false;
+}
+
 std::vector<PlainCoil> plain_coils(const Body& body) {
   std::vector<PlainCoil> out;
   if (body.language != Language::kLadder || may_skip(body)) return out;
@@ -153,6 +152,7 @@ std::vector<PlainCoil> plain_coils(const Body& body) {
 
 void report_suspicious(const Body& body, base::Diagnostics& diagnostics) {
   report_second_coils(body, diagnostics);
+  report_second_writers(body, diagnostics);
   report_boxes_without_power(body, diagnostics);
 }
 

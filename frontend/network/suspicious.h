@@ -1,8 +1,9 @@
-// What a diagram may say, but hardly means: a second coil of a variable (W0035), a timer,
-// counter or edge box whose input gets no power (W0036).
+// What a diagram may say, but hardly means: a second coil or writer of a variable (W0035), a
+// timer, counter or edge box whose input gets no power (W0036).
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -19,5 +20,13 @@ struct PlainCoil {
 std::vector<PlainCoil> plain_coils(const Body& body);
 
 void report_suspicious(const Body& body, base::Diagnostics& diagnostics);
+
+// --- its parts
+// The operand, folded, when it is the same place whatever else is going on (no index varies); else
+// "".
+std::string fixed_place(std::string_view operand);
+// A jump or RETURN may leave out what follows.
+bool may_skip(const Body& body);
+void report_second_writers(const Body& body, base::Diagnostics& diagnostics);
 
 }  // namespace frontend::network

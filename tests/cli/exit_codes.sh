@@ -135,3 +135,13 @@ typed
 expect 0 stvm force Main.small=4 --dir plc --format json
 json 'd["forces"][0]["type"] == "INT" and d["forces"][0]["value"] == 4'
 expect 0 stvm stop --dir plc
+
+# What follows a controller ends where nobody gets what it prints.
+printf 'PROGRAM Main VAR n : INT; END_VAR n := n + 1; END_PROGRAM\n' >followed.st
+serve plc followed.st
+for command in 'events --follow' 'watch Main.n --interval 1' 'top --interval 1'; do
+  code=0
+  full timeout 60 "$bin/stvm" $command --dir plc || code=$?
+  [ "$code" -eq 74 ] || fail "exit code $code instead of 74: stvm $command"
+done
+expect 0 stvm stop --dir plc

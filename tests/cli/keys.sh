@@ -57,6 +57,8 @@ expect 7 stc key verify a.img --trust trust.toml
 said R0420
 expect 0 stvm run a.signed --scans 1 --virtual-time --print Main.n
 serve plc --trust trust.toml a.signed
+expect 0 stvm events --dir plc
+grep -q alarm out && fail "a first start with keys is no alarm"
 running() { stvm status --dir plc --format json | sed 's/.*"running":"\([0-9a-f]*\)".*/\1/'; }
 first=$(running)
 

@@ -37,6 +37,19 @@ refused 7 'R0503' --record /nonexistent/x v3.st
 refused 7 'R0118' --code-limit 10 v3.st
 refused 7 'R0412' lacks
 refused 2 'R0504' --cpu 99999 v3.st
+# Nor does it leave a folder that was not there.
+for options in '--device foo.x=1 v3.st' '--record /nonexistent/x v3.st' '--code-limit 10 v3.st' 'lacks' \
+  '--cpu 99999 v3.st' '--trust nowhere.toml v3.st'; do
+  for folder in fresh deep/er; do
+    code=0
+    "$bin/stvm" serve --dir $folder $options >out 2>err || code=$?
+    [ "$code" -ne 0 ] && [ ! -e $folder ] || fail "$code, and there is a folder: $options: $(ls $folder)"
+  done
+done
+said '^stvm: R0501: --trust nowhere.toml: '
+mkdir empty
+expect 7 stvm serve --dir empty --code-limit 10 v3.st
+[ -d empty ] || fail "a folder that was there is gone"
 serve
 expect 0 stvm status --dir plc --format json
 json 'd["running"] == json.load(open("before"))["running"] and d["edits"] == 1'

@@ -83,7 +83,7 @@ void say_missing(const Entries& entries, uint64_t wanted) {
 // has noted last is in its journal.
 base::Status follow(const tools::Options& options, ControllerClient& client, Shown& shown) {
   StopSignal::install();
-  for (uint64_t next = 0; !StopSignal::received();) {
+  for (uint64_t next = 0; !StopSignal::received() && std::ferror(stdout) == 0;) {
     base::Result<Entries> entries = client.events(next);
     if (!entries.ok() && (next == 0 || entries.error().refusal != base::Refusal::kNotRunning)) {
       return entries.error();

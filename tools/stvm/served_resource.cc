@@ -1,6 +1,7 @@
 #include "tools/stvm/served_resource.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/sha256.h"
 #include "tools/common/files.h"
@@ -40,7 +41,13 @@ ServedResource::ServedResource(const std::string& directory, const std::string& 
       store_(storage_),
       events_(std::make_shared<EventLog>(store_, name, output)) {}
 
-ServedResource::~ServedResource() { events_->close(); }
+ServedResource::~ServedResource() {
+  events_->close();
+  if (begun_ || !folder_.is_new()) return;
+  server_.reset();  // its socket lies there
+  std::error_code stays;
+  std::filesystem::remove_all(folder_.path(), stays);
+}
 
 void ServedResource::note(online_change::Event event, std::string text) {
   online_change::JournalEntry entry;
@@ -53,17 +60,17 @@ void ServedResource::note(online_change::Event event, std::string text) {
 
 // What boots is not asked about: it is in the state folder, which is trusted, and so the same
 // command line starts the controller again, whatever has expired.
-base::Status ServedResource::admit(const std::optional<ir::VerifiedImage>& given,
-                                   const StartTrust& trust) {
-  if (trust.path.empty()) return base::Ok{};
+base::Result<std::string> ServedResource::admit(const std::optional<ir::VerifiedImage>& given,
+                                                const StartTrust& trust) {
+  if (trust.path.empty()) return std::string();
   auto made = make_trust(trust.path, store_);
-  if (!made.ok()) return made.error();
+  if (!made.ok()) return base::Error{made.error().refusal, "--trust " + made.error().text};
   trust_ = std::move(*made);
-  if (!given || store_.boots() == given->digest()) return base::Ok{};
+  if (!given || store_.boots() == given->digest()) return std::string();
   const auto found = trust.images.find(base::sha256(given->encoded()));
   if (found == trust.images.end()) {
     const base::Error unsigned_image{base::Refusal::kUnsigned,
-                                     "nobody has signed the image to start with"};
+                                     "nobody has signed the image that it is to start with"};
     note(Event::kRefused, base::to_string(unsigned_image));
     return unsigned_image;
   }
@@ -71,9 +78,9 @@ base::Status ServedResource::admit(const std::optional<ir::VerifiedImage>& given
   base::Result<Signed> signer =
       trust_->check(found->second, online_change::SignedKind::kImage, now_s);
   base::Status taken = signer.ok() ? trust_->take(*signer, now_s) : base::Status(signer.error());
-  note(taken.ok() ? Event::kStaged : Event::kRefused,
-       taken.ok() ? signer_text(*signer) : base::to_string(taken.error()));
-  return taken;
+  if (taken.ok()) return signer_text(*signer);
+  note(Event::kRefused, base::to_string(taken.error()));
+  return taken.error();
 }
 
 base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
@@ -91,10 +98,11 @@ base::Result<std::unique_ptr<ServedResource>> ServedResource::open(
   const bool is_new = folder->is_new();
   auto out = std::make_unique<ServedResource>(directory, name, std::move(*folder), output);
   if (is_new) out->note(Event::kNewFolder, "new state folder: " + out->folder_.path());
-  if (base::Status admitted = out->admit(given, trust); !admitted.ok()) {
-    return base::Error{admitted.error().refusal, directory + ": " + admitted.error().text};
-  }
+  const base::Result<std::string> signer = out->admit(given, trust);
+  if (!signer.ok()) return signer.error();
   auto boot = online_change::choose_boot(out->store_, given, kWho, wall_time_ns(), create);
+  // Behind the choice: a folder whose journal has a row is not new.
+  if (!signer->empty()) out->note(Event::kStaged, *signer);
   if (!boot.ok() && boot.error().refusal == base::Refusal::kFileNotFound) return empty(directory);
   if (!boot.ok()) {
     return base::Error{boot.error().refusal, directory + ": " + boot.error().text};
@@ -135,6 +143,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
 }
 
 base::Status ServedResource::begin() {
+  begun_ = true;
   base::Status stored = online_change::carry_out(store_, *boot_);
   if (!stored.ok()) {
     return base::Error{stored.error().refusal, directory_ + ": " + stored.error().text};

@@ -62,7 +62,9 @@ class ServedResource {
 
  private:
   void note(online_change::Event event, std::string text);
-  base::Status admit(const std::optional<ir::VerifiedImage>& given, const StartTrust& trust);
+  // Who has signed it; empty: nobody has to.
+  base::Result<std::string> admit(const std::optional<ir::VerifiedImage>& given,
+                                  const StartTrust& trust);
   void idle(const std::function<bool()>& stop, const std::function<void()>& alive);
 
   std::string directory_;
@@ -73,6 +75,7 @@ class ServedResource {
   std::shared_ptr<EventLog> events_;  // threads of devices that hang may outlive this
   std::unique_ptr<Trust> trust_;      // null: without keys
   std::optional<online_change::Boot> boot_;
+  bool begun_ = false;  // until then a folder that open() has made goes again
   vm::Clock* clock_ = nullptr;
   const vm::RealClock* real_clock_ = nullptr;  // null: in virtual time
   std::unique_ptr<ResourceController> running_;

@@ -111,7 +111,7 @@ base::Status top(const tools::Options& options) {
   const Screen screen;
   const int pause_ms = static_cast<int>(std::min<uint64_t>(*interval, 3'600'000));
   if (*count != 0) screen.show(top_page(*before, *before, view_of_terminal()));
-  for (uint64_t i = 1; i < *count && !StopSignal::received(); ++i) {
+  for (uint64_t i = 1; i < *count && !StopSignal::received() && std::ferror(stdout) == 0; ++i) {
     if (!screen.wait(pause_ms)) break;
     base::Result<vm::StatusReport> now = client->status();
     if (!now.ok()) return now.error();

@@ -62,7 +62,9 @@ base::Status watch(const tools::Options& options) {
   base::Result<Names> names = matching(*client, options.arguments());
   if (!names.ok()) return names.error();
   StopSignal::install();
-  for (uint64_t shown = 0; shown < *count && !StopSignal::received();) {
+  // Output that is lost is lost for good: a disk is full, or nobody reads.
+  for (uint64_t shown = 0;
+       shown < *count && !StopSignal::received() && std::ferror(stdout) == 0;) {
     if (shown != 0) std::this_thread::sleep_for(std::chrono::milliseconds(*interval));
     base::Result<vm::Values> values = client->get(*names);
     if (!values.ok()) {

@@ -28,11 +28,11 @@ std::optional<CoilPlace> global_of(const Sema& sema, VarId id, std::string_view 
   if (sema.declared.variables[id.index].same_as.valid())
     id = sema.declared.variables[id.index].same_as;
   variable = &sema.declared.variables[id.index];
-  if (variable->pou != kNoPou) return std::nullopt;
   if (variable->decl != nullptr && variable->decl->has_address && !variable->decl->incomplete) {
     const std::string address = ir::fold_name(ir::address_text(variable->decl->address));
     return CoilPlace{VarId().index, address + std::string(rest)};
   }
+  if (variable->pou != kNoPou) return std::nullopt;
   return CoilPlace{id.index, std::string(rest)};
 }
 
