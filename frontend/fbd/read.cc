@@ -135,7 +135,7 @@ class Reader {
 
   void row() {
     if (cursor_.accept(TokenKind::kSemicolon)) return;
-    if (cursor_.is_word("JMP") && is_name(cursor_.kind(1))) return jump();
+    if (cursor_.at_jump()) return jump();
     if (cursor_.kind() == TokenKind::kReturn) return leave();
     if (cursor_.is_word("WIRE") && is_name(cursor_.kind(1))) return wire();
     if (size_t colon = colon_of_row(); colon != 0) {
@@ -254,7 +254,7 @@ class Reader {
   void jump() {
     size_t begin = cursor_.place();
     cursor_.take();
-    conditional(Kind::kJump, cursor_.name(), begin);
+    conditional(Kind::kJump, cursor_.label(), begin);
   }
   void leave() {
     size_t begin = cursor_.place();

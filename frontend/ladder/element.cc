@@ -71,9 +71,9 @@ class ElementReader {
   }
 
   Made coil() {
-    if (cursor_.is_word("JMP") && is_name(cursor_.kind(1))) {
+    if (cursor_.at_jump()) {
       cursor_.take();
-      return add_simple(Kind::kJump, Modifier::kNone, cursor_.name());
+      return add_simple(Kind::kJump, Modifier::kNone, cursor_.label());
     }
     if (cursor_.kind() == TokenKind::kReturn) {
       cursor_.take();

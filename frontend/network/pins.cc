@@ -54,6 +54,15 @@ Text Cursor::name() {
   return text_from(begin);
 }
 
+Text Cursor::label() {
+  if (is_keyword(kind())) {
+    report(base::DiagnosticCode::kReservedWord, token().span(),
+           found() + " is a reserved word and cannot name a label", "choose another name");
+    take();
+  }
+  return name();
+}
+
 Text Cursor::operand(TokenKind closing) {
   size_t begin = at_;
   uint32_t depth = 0;

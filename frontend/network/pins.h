@@ -34,6 +34,9 @@ class Cursor {
   void go_to(size_t place) { at_ = place; }
 
   Text name();  // takes A.B.C
+  // JMP and a label, or a reserved word, which label() refuses.
+  bool at_jump() const { return is_word("JMP") && (is_name(kind(1)) || is_keyword(kind(1))); }
+  Text label();
   // Takes tokens up to one of `,` `=>` `closing` `;` or a `:=` outside of brackets, or the end.
   Text operand(TokenKind closing);
   Text text_from(size_t place) const;  // what the tokens from there on, up to here, are

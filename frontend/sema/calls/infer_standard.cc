@@ -16,13 +16,24 @@ using stdlib::FunctionRule;
 
 namespace {
 
-// In a diagram: power at an operand of a box for numbers is meant for EN.
+// In a diagram: what arrives at a box, from the rail too, which is TRUE at the place of the box.
+bool is_power(const Sema& sema, ExprId id) {
+  const Expr& expr = sema.tree[id];
+  if (expr.kind != ExprKind::kLiteral) return expr.kind == ExprKind::kResult;
+  const uint32_t file = sema.sources.file_of(expr.span.begin);
+  if (file == sema.sources.file_count()) return false;
+  const uint32_t at = expr.span.begin.offset - sema.sources.begin(file).offset;
+  const std::string_view begins = sema.sources.text(file).substr(at, 1);
+  return begins == "[" || begins == "_";
+}
+
+// Power at an operand of a box for numbers is meant for EN.
 bool takes_power(const Phase& phase, const Expr& expr, const stdlib::FunctionRow& row,
                  const std::vector<ExprId>& args) {
   const bool numbers = row.rule == FunctionRule::kCompare ||
                        row.rule == FunctionRule::kArithmetic || row.rule == FunctionRule::kExtreme;
   if (!numbers || args.size() < 2 || !args[0].valid() || !args[1].valid()) return false;
-  const bool power = phase.sema().tree[args[0]].kind == ExprKind::kResult &&
+  const bool power = is_power(phase.sema(), args[0]) &&
                      traits_of(phase.sema().program.types, phase.infer(args[0]).type).boolean;
   if (!power || !traits_of(phase.sema().program.types, phase.infer(args[1]).type).number())
     return false;
@@ -183,6 +194,10 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
                                                            argument(i), expr.span)
                    : ask<OperatorTypes>().infer_bitwise(standard_operator(row.id), note,
                                                         argument(i), expr.span);
+      }
+      const bool divides = op == BinaryOp::kDiv || op == BinaryOp::kMod;
+      if (divides && note.type.valid() && argument(1).constant && !argument(0).constant) {
+        check_divisor(*this, args[1], !traits_of(sema_.program.types, note.type).real);
       }
       return note;
     }
