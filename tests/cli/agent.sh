@@ -95,6 +95,16 @@ expect 0 fleet undo --yes --sign office.key
 [ "$(running one)$(running two)" = "$old$old" ] || fail "it is not taken back"
 expect 0 fleet undo --yes --sign office.key
 
+# SIGHUP has it read the file of the broker anew and connect; a bad file changes nothing.
+cp broker.toml good.toml
+echo nonsense >broker.toml
+kill -HUP "$(cat two-agent.pid)"
+wait_for 'agent: SIGHUP: stays connected' cat two.agent.log
+cp good.toml broker.toml
+kill -HUP "$(cat two-agent.pid)"
+wait_for 'agent: SIGHUP: connects anew' cat two.agent.log
+wait_for '^two .*reached' "$bin/stvm" fleet status --fleet fleet.toml
+
 # An agent is killed: its will says so. What is ordered waits, and it comes back to it.
 kill -9 "$(cat two-agent.pid)"
 wait_for '^two .*unreachable' "$bin/stvm" fleet status --fleet fleet.toml

@@ -61,9 +61,23 @@ std::string own_folder(std::string directory) {
   return directory + ".agent";
 }
 
-void run_until_stopped(mqtt::Broker& broker, Agent& agent) {
+// SIGHUP: the file of the broker anew, and with it password and certificates. One that cannot be
+// read changes nothing.
+std::optional<FleetBroker> broker_anew(const std::string& path) {
+  if (!StopSignal::take_hangup()) return std::nullopt;
+  base::Result<FleetBroker> where = read_broker(path);
+  log_agent(where.ok() ? "SIGHUP: connects anew"
+                       : "SIGHUP: stays connected as it is: " + base::to_string(where.error()));
+  if (!where.ok()) return std::nullopt;
+  return *std::move(where);
+}
+
+// Null: stopped. Else where to connect anew.
+std::optional<FleetBroker> run_until_stopped(mqtt::Broker& broker, Agent& agent,
+                                             const std::string& path) {
   int64_t next_look_ms = agent_clock_ms();
   while (!StopSignal::received()) {
+    if (std::optional<FleetBroker> anew = broker_anew(path)) return anew;
     const int64_t left = next_look_ms - agent_clock_ms();
     if (left <= 0) {
       agent.look();
@@ -72,6 +86,7 @@ void run_until_stopped(mqtt::Broker& broker, Agent& agent) {
       agent.take(*event);
     }
   }
+  return std::nullopt;
 }
 
 base::Status serve_broker(const tools::Options& options, ConnectBroker connect) {
@@ -94,24 +109,27 @@ base::Status serve_broker(const tools::Options& options, ConnectBroker connect) 
   if (!trust.ok()) return trust.error();
   AgentMemory memory(storage);
   memory.read();
-  const AgentTopics topics{where->prefix};
-  mqtt::Settings settings = where->settings;
-  settings.client = "stvm-" + *name;
-  settings.will = mqtt::Message{topics.of(*name, kAgentOnline), {'0'}, true};
-  base::Result<std::unique_ptr<mqtt::Broker>> broker = connect(settings);
-  if (!broker.ok()) return broker.error();
-  StopSignal::install();
-  Agent agent(*name, topics,
-              {**broker, memory, **trust,
-               [&] {
-                 return ControllerClient::connect_here(directory,
-                                                       vm::SocketClient::kPatienceSeconds);
-               },
-               open_agent_edit, fetch_file, agent_wall_s, agent_clock_ms, log_agent});
-  run_until_stopped(**broker, agent);
-  // A clean end publishes no will.
-  (void)(*broker)->publish(settings.will->topic, settings.will->payload, true);
-  (void)(*broker)->flush(kLastWordsMs);
+  StopSignal::install_service();
+  std::optional<FleetBroker> next = *where;
+  while (next) {
+    const AgentTopics topics{next->prefix};
+    mqtt::Settings settings = next->settings;
+    settings.client = "stvm-" + *name;
+    settings.will = mqtt::Message{topics.of(*name, kAgentOnline), {'0'}, true};
+    base::Result<std::unique_ptr<mqtt::Broker>> broker = connect(settings);
+    if (!broker.ok()) return broker.error();
+    Agent agent(*name, topics,
+                {**broker, memory, **trust,
+                 [&] {
+                   return ControllerClient::connect_here(directory,
+                                                         vm::SocketClient::kPatienceSeconds);
+                 },
+                 open_agent_edit, fetch_file, agent_wall_s, agent_clock_ms, log_agent});
+    next = run_until_stopped(**broker, agent, options.text("--broker"));
+    // A clean end publishes no will.
+    (void)(*broker)->publish(settings.will->topic, settings.will->payload, true);
+    (void)(*broker)->flush(kLastWordsMs);
+  }
   return base::Ok{};
 }
 
