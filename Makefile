@@ -25,6 +25,7 @@
 #   make deb      the Debian packages, in build/release
 #   make archives   static archives for amd64 and arm64 and an OCI image, in build/archives; each runs
 #                   the bottling line in an empty root
+#   make release  packages, archives and images of a version with their sums, in build/given_out
 #   make format   clang-format over the whole tree
 
 BUILD := build/release
@@ -32,7 +33,7 @@ JOBS := $(shell nproc)
 # Some tests wait for what other processes do, and a core is free meanwhile.
 TEST_JOBS := $(shell expr $(JOBS) + 1)
 
-.PHONY: install deb archives all build setup demo demo-fleet test test-ansible test-arm64 minimal minimal-scripts hard clang bench bench-large bench-pause format asan asan-clang asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
+.PHONY: install deb archives release all build setup demo demo-fleet test test-ansible test-arm64 minimal minimal-scripts hard clang bench bench-large bench-pause format asan asan-clang asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
 
 all: build
 
@@ -197,6 +198,11 @@ install: build
 
 deb: build
 	@cd $(BUILD) && cpack -G DEB
+
+# Debian packages, archives and images of a version, tried in empty roots, with their sums.
+release: build
+	@scripts/setup.sh lintian g++-aarch64-linux-gnu qemu-user-static
+	@scripts/release.sh build/given_out $(JOBS)
 
 archives: setup
 	@scripts/setup.sh g++-aarch64-linux-gnu qemu-user-static

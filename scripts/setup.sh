@@ -17,6 +17,8 @@ need python3 python3
 need mbpoll mbpoll
 need curl curl
 need xmllint libxml2-utils
+need zsh zsh
+need fish fish
 [ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
 [ -e /usr/include/openssl/evp.h ] || missing="$missing libssl-dev"
 [ -e /usr/include/mosquitto.h ] || missing="$missing libmosquitto-dev"
