@@ -2,6 +2,7 @@
 // into blocks that nothing reaches; finish() removes those.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ class Builder {
   ir::ValueId add_param(ir::BlockId block, ir::Scalar scalar);
   // False after a terminator.
   bool reachable() const { return current_.valid(); }
+  // Blocks in the order in which they were started; what was written is in those that have ended.
+  std::span<const ir::BlockId> blocks() const { return order_; }
+  const ir::Pou& pou() const { return pou_; }
 
   ir::ValueId constant(ir::Scalar scalar, uint64_t bits);
   ir::ValueId load(const ir::Place& place, ir::Scalar scalar);

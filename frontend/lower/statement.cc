@@ -5,6 +5,7 @@
 #include "frontend/lower/current_results.h"
 #include "frontend/lower/for_code.h"
 #include "frontend/lower/mock_code.h"
+#include "frontend/lower/rounds.h"
 #include "frontend/lower/statements.h"
 #include "frontend/lower/try_code.h"
 #include "frontend/lower/values.h"
@@ -148,16 +149,32 @@ void Statements::check_end(ExprId condition, bool goes_on) {
           "let the condition depend on what the loop changes, or leave it with EXIT");
 }
 
+// The loop began with block `first`; `tests` blocks from `test` on compute its condition.
+void Statements::check_rounds(ExprId condition, size_t first, size_t test, size_t tests) {
+  const Note& note = infer(condition);
+  if (note.constant || !note.type.valid()) return;
+  const std::span<const ir::BlockId> blocks = build_.blocks();
+  if (!is_same_each_round(build_.pou(), blocks.subspan(test, tests), blocks.subspan(first))) return;
+  warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,
+          "once this loop goes on it never ends: nothing in it changes its condition",
+          "let the condition depend on what the loop changes; inputs change between scans only");
+}
+
 void Statements::while_statement(const Stmt& stmt) {
   ir::BlockId head = build_.new_block();
   ir::BlockId body = build_.new_block();
   ir::BlockId exit = build_.new_block();
   build_.jump(head);
+  const size_t first = build_.blocks().size();
   build_.start(head);
   body_.counting.decide(ask<Values>().condition(stmt.value), body, exit,
                         tree_[stmt.value].span.begin, "WHILE");
+  const size_t behind = build_.blocks().size();
   build_.start(body);
-  if (!loop_body(stmt.body, head, exit)) check_end(stmt.value, true);
+  if (!loop_body(stmt.body, head, exit)) {
+    check_end(stmt.value, true);
+    check_rounds(stmt.value, first, first, behind - first);
+  }
   build_.start(exit);
 }
 
@@ -166,11 +183,15 @@ void Statements::repeat_statement(const Stmt& stmt) {
   ir::BlockId test = build_.new_block();
   ir::BlockId exit = build_.new_block();
   build_.jump(body);
+  const size_t first = build_.blocks().size();
   build_.start(body);
-  if (!loop_body(stmt.body, test, exit)) check_end(stmt.value, false);
+  const bool left = loop_body(stmt.body, test, exit);
+  if (!left) check_end(stmt.value, false);
+  const size_t tested = build_.blocks().size();
   build_.start(test);
   body_.counting.decide(ask<Values>().condition(stmt.value), exit, body,
                         tree_[stmt.value].span.begin, "UNTIL");
+  if (!left) check_rounds(stmt.value, first, tested, build_.blocks().size() - tested);
   build_.start(exit);
 }
 

@@ -21,6 +21,7 @@ class Statements : public BodyPhase {
   void while_statement(const Stmt& stmt);
   void repeat_statement(const Stmt& stmt);
   void check_end(ExprId condition, bool goes_on);
+  void check_rounds(ExprId condition, size_t first, size_t test, size_t tests);
   bool differs_by_code(ExprId condition) const;
   void leave_loop(const Stmt& stmt);
   void leave_loops();
