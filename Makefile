@@ -164,6 +164,7 @@ differential: build
 	@python3 tests/fates/main.py $(BUILD)/tests/fates $(SEED) $(PROGRAMS) --jobs $(JOBS)
 	@tests/cli/drawn_random.sh $(CURDIR) $(CURDIR)/$(BUILD) $(SEED) $(DRAWINGS)
 	@tests/cli/second_reader.sh $(CURDIR) $(CURDIR)/$(BUILD) $(SEED) $(DRAWINGS)
+	@tests/cli/drawn_changes.sh $(CURDIR) $(CURDIR)/$(BUILD) $(SEED) $(DRAWINGS)
 
 # Hours, not minutes: eight hours of each of four simulated plants with changes, clients and faults;
 # 100,000 random programs on every tier; identity changes at 100,000 scans of the line.

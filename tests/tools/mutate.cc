@@ -114,8 +114,9 @@ std::string target_of(const std::string& ctest) {
     const std::string name = ctest.substr(5);
     return "test_" + (name.ends_with("_standby") ? name.substr(0, name.size() - 8) : name);
   }
-  if (ctest.starts_with("cli_")) return "stc stvm shared_memory_client";  // what its script runs
-  return ctest.substr(0, ctest.find('_'));                                // golden_change: golden
+  if (ctest.starts_with("cli_"))
+    return "stc stvm golden shared_memory_client";  // what its script runs
+  return ctest.substr(0, ctest.find('_'));          // golden_change: golden
 }
 
 // Suite.Name of the tests in the folder that the program is made of.
@@ -323,7 +324,7 @@ class Workshop {
   const fs::path build_;
   const fs::path log_;
   std::string mutated_;
-  std::string original_;  // as copied: the sources may change meanwhile
+  std::string original_;                 // as copied: the sources may change meanwhile
   std::map<std::string, double> usual_;  // seconds of each test without any mutation
 };
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""random_drawn_text.py SEED LANGUAGE: a random program whose body is drawn as text (LD or FBD) or made
-of instructions (IL), with edges, jumps, returns, timers, counters, a block with an in-out and a
-configuration. The numbers that it writes are summed up in `sum`."""
+"""random_drawn_text.py SEED LANGUAGE [EDIT]: a random program whose body is drawn as text (LD or FBD) or
+made of instructions (IL), with edges, jumps, returns, timers, counters, a block with an in-out and a
+configuration. The numbers that it writes are summed up in `sum`. With EDIT it has networks more, which
+write variables of their own only, so that `sum` stays what it is."""
 import random
 import sys
 
@@ -23,6 +24,9 @@ class Maker:
         self.random = random.Random(seed)
         self.instances = []  # name, type
         self.labels = 0
+        self.extra = None  # the random numbers of the edit
+        self.extra_instances = []
+        self.extras = 0
 
     def chance(self, share):
         return self.random.random() < share
@@ -34,8 +38,22 @@ class Maker:
         return self.random.choice(NUMBERS)
 
     def instance(self, kind):
-        self.instances.append((f"b{len(self.instances)}", kind))
+        self.instances.append((f"{'e' if self.random is self.extra else 'b'}{len(self.instances)}", kind))
         return self.instances[-1][0]
+
+    def swap(self):
+        """An extra network by its own random numbers, which writes own variables only."""
+        mine = (self.random, self.instances)
+        self.random, self.instances = self.extra, self.extra_instances
+        made = None
+        if self.random.random() < 0.35:
+            made = self.extra_network()
+        self.random, self.instances = mine
+        return made
+
+    def own(self, kind):
+        self.extras += 1
+        return f"{kind}{self.extras}"
 
     def label(self):
         self.labels += 1
@@ -62,7 +80,17 @@ class Maker:
                 out.append((make("back", name), None))
             else:
                 out.append((make("network", None), None))
-        return out + [(None, each[1]) for each in waiting]
+        out += [(None, each[1]) for each in waiting]
+        if self.extra is None:
+            return out
+        more = []
+        for part in out:
+            made = self.swap()
+            # Not between a label and its network, nor in front of a jump back.
+            if made is not None and not (more and more[-1][0] is None):
+                more.append((made, None))
+            more.append(part)
+        return more
 
 
 class Ladder(Maker):
@@ -136,6 +164,24 @@ class Ladder(Maker):
         return "\n".join(("  |--" if row == 0 else "  |  ") + text.rstrip() + ("--|" if row == 0 else "")
                          for row, text in enumerate(made))
 
+    def extra_network(self):
+        tree = self.extra_tree()
+        coils = [[f"({self.random.choice(['', '/', 'S', 'P', 'N'])} {self.own('x')} )"]]
+        made = self.series([tree] + coils)
+        return "\n".join(("  |--" if row == 0 else "  |  ") + text.rstrip() + ("--|" if row == 0 else "")
+                         for row, text in enumerate(made))
+
+    def extra_tree(self):
+        parts = [self.contact() for _ in range(self.random.randint(1, 2))]
+        pick = self.random.random()
+        if pick < 0.2:
+            parts.append([f"[ {self.instance('CTU')}: CTU CU:=_, R:={self.bit()}, PV:=3, CV=>{self.own('y')} ]"])
+        elif pick < 0.4:
+            parts.append([f"[ {self.instance('TON')}: TON IN:=_, PT:=T#20ms ]"])
+        elif pick < 0.5:
+            parts.append([f"[ {self.own('y')} := ADD({self.number()}, 1) ]"])
+        return self.series(parts) if self.random.random() < 0.6 else self.parallel(parts[:1] + [self.contact()])
+
     def body(self):
         out = []
         for network, name in self.parts(self.rung, 14):
@@ -144,6 +190,22 @@ class Ladder(Maker):
 
 
 class Diagram(Maker):
+    def extra_network(self):
+        lines, known = [], []
+        pick = self.random.random()
+        if pick < 0.5:
+            wire = f"v{self.random.randint(0, 10 ** 9)}"
+            lines.append(f"WIRE {wire} := AND({self.pin([])}, {self.pin([])});")
+            known.append(wire)
+        else:
+            kind = self.random.choice(["TON", "R_TRIG"])
+            name = self.instance(kind)
+            lines.append(f"{name} : {kind}({'IN' if kind == 'TON' else 'CLK'} := {self.pin([])}" +
+                         (", PT := T#20ms);" if kind == "TON" else ");"))
+            known.append(f"{name}.Q")
+        lines.append(f"{self.own('x')} {self.random.choice([':=', 'S='])} {known[0]};")
+        return "\n".join(lines)
+
     def pin(self, known):
         text = self.random.choice(known + INPUTS + OUTPUTS)
         return ("NOT " if self.chance(0.25) else "") + text
@@ -202,6 +264,14 @@ class Diagram(Maker):
 
 
 class Instructions(Maker):
+    def extra_network(self):
+        lines = self.value()
+        lines.append(f"{self.random.choice(['ST', 'STN', 'S'])} {self.own('x')}")
+        if self.random.random() < 0.4:
+            made = self.instance("TON")
+            lines += [f"ST {made}.IN", f"CAL {made}(PT := T#20ms)", f"LD {made}.Q", f"ST {self.own('x')}"]
+        return lines
+
     def value(self):
         """Instructions that leave a BOOL as the current result."""
         lines = [f"LD{self.random.choice(['', 'N'])} {self.bit()}"]
@@ -255,13 +325,17 @@ class Instructions(Maker):
 KINDS = {"LD": Ladder, "FBD": Diagram, "IL": Instructions}
 
 
-def main(seed, language):
+def main(seed, language, edit=None):
     maker = KINDS[language](f"{seed}{language}")
+    if edit:
+        maker.extra = random.Random(f"edit{edit}")
     body = maker.body()
     print(PARTS)
     print("PROGRAM Drawn\nVAR_EXTERNAL")
     print(f"  {', '.join(INPUTS + OUTPUTS)} : BOOL;\n  {', '.join(NUMBERS)}, rounds : INT;\nEND_VAR\nVAR")
-    for name, kind in maker.instances:
+    for n in range(1, maker.extras + 1):
+        print(f"  x{n} : BOOL; y{n} : UINT;")
+    for name, kind in maker.instances + maker.extra_instances:
         print(f"  {name} : {kind};")
     print(f"  none : BOOL;\nEND_VAR\n{body}\nEND_PROGRAM\n")
     print("PROGRAM MAIN\nVAR_EXTERNAL")
@@ -282,4 +356,4 @@ def main(seed, language):
           "  PROGRAM Second WITH Fast : Drawn;\n  PROGRAM Third WITH Slow : Total;\nEND_RESOURCE\nEND_CONFIGURATION")
 
 
-main(sys.argv[1], sys.argv[2])
+main(*sys.argv[1:])
