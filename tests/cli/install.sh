@@ -18,7 +18,7 @@ runs_line() {
   # As the unit does it, but for the places.
   grep -q '^ExecStart=/usr/bin/stvm serve --seccomp --dir /var/lib/stvm/%i --first /etc/stvm/%i.img$' \
     "$root"/usr/lib/systemd/system/stvm@.service || fail "the unit starts something else"
-  "$installed/stvm" serve --seccomp --dir "$state" --first "$root/line.img" >"$state.log" 2>&1 &
+  "$installed/stvm" serve $seccomp --dir "$state" --first "$root/line.img" >"$state.log" 2>&1 &
   echo $! >"$state.pid"
   wait_for ': running$' "$installed/stvm" status --dir "$state"
   expect 0 "$installed/stvm" change "$examples/bottling_line_v2" --dir "$state" --allow-loss --yes \
@@ -27,7 +27,7 @@ runs_line() {
   wait "$(cat "$state.pid")" || true
   # From then on the first image is not read, not even looked for.
   rm "$root/line.img"
-  "$installed/stvm" serve --seccomp --dir "$state" --first "$root/line.img" >"$state.log" 2>&1 &
+  "$installed/stvm" serve $seccomp --dir "$state" --first "$root/line.img" >"$state.log" 2>&1 &
   echo $! >"$state.pid"
   wait_for ': running$' "$installed/stvm" status --dir "$state"
   expect 0 "$installed/stvm" get --dir "$state" CurrentState

@@ -2,7 +2,7 @@
 # --seccomp: every thread of a controller has its filter, and all that a controller does works: devices, retained values,
 # online change, undo, forces, recording, machine code, names of users.
 . "$(dirname "$0")/lib.sh"
-if grep -qE '^STC_SANITIZE:[A-Z]*=.*(address|thread)' "$2/CMakeCache.txt"; then
+if [ -z "$seccomp" ]; then
   echo "left out: what looks for leaks at the end of a process wants to look into it"
   exit 77
 fi
