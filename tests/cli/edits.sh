@@ -100,7 +100,8 @@ said 'R0305'
 # What was accepted boots, and a change that is made now leaves nothing to bring again.
 expect 0 stvm change v2.st --dir plc --yes --allow-overrun --permanent
 expect 7 stvm redo --dir plc --yes
-said 'R0305'
+said 'R0305: no edit was undone'
+said 'help: `stvm edits` lists what can be undone or brought again'
 expect 0 stvm journal --dir plc
 said 'edit E1'
 expect 0 stvm stop --dir plc

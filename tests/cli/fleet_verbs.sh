@@ -141,6 +141,14 @@ cp waits.out out
 [ "$code" -eq 0 ] || fail "exit code $code of a run that waits"
 said '^waits +original +done '
 
+# Where only stvm is, it says which package has what a command needs.
+mkdir alone
+cp "$bin/stvm" alone
+expect 7 alone/stvm run original.st --scans 1 --virtual-time
+said 'R0501: .*alone/stc: .*; it comes with the package stc$'
+expect 7 alone/stvm fleet list x.fleet
+said 'stvm-fleet: .*; it comes with the package stc$'
+
 # E-14: between the check and the package somebody else has changed it. The compiler is slow here.
 mkdir slow
 cp "$bin/stvm" "$bin/stvm-fleet" slow

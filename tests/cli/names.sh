@@ -111,3 +111,14 @@ ST
 expect 0 stvm run edges.st --scans 2 --virtual-time --print 'Main.c.t.Q#rising#n[1]' --print 'main.C.T.q#RISING#N[1]'
 expect 7 stvm run edges.st --scans 2 --virtual-time --print 'Main.c.t.Q#falling#n[1]'
 said 'R0401: `Main.c.t.Q#falling#n\[1\]`: `Q#falling#n` is no member'
+
+# A name that two files declare: the message has both places, and a call of it no further error.
+mkdir twice
+printf 'FUNCTION Add1 : INT VAR_INPUT a : INT; END_VAR Add1 := a + 1; END_FUNCTION\nPROGRAM Main VAR n : INT; END_VAR n := Add1(n); END_PROGRAM\nVAR_GLOBAL level : INT; END_VAR\nTYPE Pump : INT; END_TYPE\n' >twice/a.st
+printf 'PROGRAM Main END_PROGRAM\nFUNCTION Add1 : INT VAR_INPUT b : INT; END_VAR Add1 := b + 2; END_FUNCTION\nVAR_GLOBAL level : INT; END_VAR\nTYPE Pump : REAL; END_TYPE\n' >twice/b.st
+expect 1 stc check twice
+said 'b.st:1:9: error\[E2002\]: `Main` is declared twice; first declared in .*a.st:2$'
+said 'b.st:2:10: error\[E2002\]: `Add1\(INT\)` is declared twice; first declared in .*a.st:1$'
+said 'b.st:3:12: error\[E2002\]: `level` is declared twice; first declared in .*a.st:3$'
+said 'b.st:4:6: error\[E2002\]: `Pump` is declared twice; first declared in .*a.st:4$'
+said '^4 errors'

@@ -44,7 +44,9 @@ expect 0 stvm status --dir state --task Quick --format json --reset-times
 expect 0 stvm status --dir state --format json
 [ "$(number_of scans)" -gt "$before" ] || fail "scans do not go on"
 expect 7 stvm status --dir state --task nobody
-said 'R0415'
+said 'R0415: there is no task `nobody`$'
+expect 7 stvm status --dir state --task Qick
+said 'R0415: there is no task `Qick`; did you mean `Quick`'
 
 expect 0 stvm top --dir state --interval 100 --count 2
 said 'c: running'

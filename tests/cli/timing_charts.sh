@@ -71,7 +71,9 @@ expect 2 stvm run loops.st --virtual-time --scans 3 --duration Slow
 expect 2 stvm run loops.st --virtual-time --scans 3 --duration Slow=soon
 said 'is no time'
 expect 7 stvm run loops.st --virtual-time --scans 3 --duration Slowly=1ms
-said 'R0415.*Slowly'
+said 'R0415: there is no task `Slowly`; did you mean `Slow`'
+expect 2 stvm run loops.st --virtual-time --scans 3 --duration 5ms
+said '`5ms` is not TASK=TIME'
 expect 2 stvm run loops.st --virtual-time --scans 3 --duration Slow=1ms --record file
 expect 2 stvm run loops.st --virtual-time --scans 3 --strategy standby
 expect 2 stvm run loops.st --virtual-time --scans 3 --change 1ms=loops.st --strategy sideways

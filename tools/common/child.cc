@@ -148,7 +148,7 @@ base::Status run_beside(const std::string& tool, const std::vector<std::string>&
   if (!child.ok()) {
     ::close(ends[0]);
     return base::Error{child.error().refusal,
-                       child.error().text + "; stc and stvm must lie in one folder"};
+                       child.error().text + "; it comes with the package " + tool};
   }
   Output output = sort_out(tool, read_all(ends[0]));
   ::close(ends[0]);

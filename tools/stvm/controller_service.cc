@@ -8,6 +8,7 @@
 #include "base/memory_limit.h"
 #include "base/tool_limits.h"
 #include "tools/stvm/commands.h"
+#include "tools/stvm/names.h"
 #include "tools/stvm/stop_signal.h"
 #include "vm/native/program.h"
 
@@ -119,8 +120,7 @@ base::Status ControllerService::check_expected(const vm::Request& request) const
                      "the request is for version " + base::short_hex(request.expected) +
                          " edition " + std::to_string(request.edition) + ", but " +
                          base::short_hex(running) + " edition " + std::to_string(edition_) +
-                         " is running" +
-                         (changed_by_.empty() ? "" : ", made by " + changed_by_)};
+                         " is running" + (changed_by_.empty() ? "" : ", made by " + changed_by_)};
 }
 
 base::Status ControllerService::at_boundary(const std::function<void()>& job) {
@@ -234,7 +234,7 @@ base::Result<base::Bytes> ControllerService::times(const vm::Request& request) {
   const std::string name = request.names.empty() ? "" : request.names.front();
   vm::TaskCopy task(controller_, name);
   if (name.empty() || task.samples().empty()) {
-    return base::Error{base::Refusal::kNoSuchTask, "`" + name + "`"};
+    return no_such_task(controller_.image(), name);
   }
   base::Status taken =
       copy_at_boundaries([&](int64_t free_ns) { return task.take(controller_, free_ns); });

@@ -1,6 +1,7 @@
 #include "tools/stvm/names.h"
 
 #include "base/joined.h"
+#include "base/nearest_name.h"
 #include "ir/bytecode/name_index.h"
 #include "ir/bytecode/variable_names.h"
 #include "tools/common/pattern.h"
@@ -85,6 +86,13 @@ base::Result<Names> matching_forces(ControllerClient& client, const Names& names
 base::Result<Names> matching(const ir::Image& image, const Names& names) {
   const ir::NameIndex index(image);
   return expanded({.names = &index}, names);
+}
+
+base::Error no_such_task(const ir::Image& image, std::string_view name) {
+  base::NearestName nearest(name);
+  for (const ir::ImageTask& task : image.tasks) nearest.offer(task.name);
+  return {base::Refusal::kNoSuchTask,
+          base::joined({"there is no task `", name, "`", nearest.question()})};
 }
 
 base::Result<Assignments> matching(ControllerClient& client, const Assignments& rows) {

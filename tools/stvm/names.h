@@ -25,6 +25,9 @@ base::Result<Names> matching_forces(ControllerClient& client, const Names& names
 // Every name comes out as a path (ir/bytecode/variable_names.h).
 base::Result<Names> matching(const ir::Image& image, const Names& names);
 
+// kNoSuchTask, with the name that was meant, perhaps.
+base::Error no_such_task(const ir::Image& image, std::string_view name);
+
 // A value for each variable that its name stands for.
 using Assignments = std::vector<Assignment>;
 base::Result<Assignments> matching(ControllerClient& client, const Assignments& rows);

@@ -6,6 +6,7 @@
 
 #include "ir/types/time_parse.h"
 #include "tools/common/files.h"
+#include "tools/stvm/names.h"
 
 namespace stvm {
 namespace {
@@ -21,7 +22,7 @@ base::Result<int64_t> time_of(const char* option, const std::string& text) {
 base::Result<std::pair<std::string, std::string>> parts_of(const char* option, const char* form,
                                                            const std::string& text) {
   const size_t equals = text.find('=');
-  if (equals != 0 && equals + 1 < text.size()) {
+  if (equals != std::string::npos && equals != 0 && equals + 1 < text.size()) {
     return std::pair{text.substr(0, equals), text.substr(equals + 1)};
   }
   return base::Error{base::Refusal::kUsage,
@@ -83,7 +84,7 @@ base::Status RunTiming::check_tasks(const ir::Image& image) const {
     const bool there =
         std::any_of(image.tasks.begin(), image.tasks.end(),
                     [&](const ir::ImageTask& task) { return ir::same_name(task.name, name); });
-    if (!there) return base::Error{base::Refusal::kNoSuchTask, "`" + name + "`"};
+    if (!there) return no_such_task(image, name);
   }
   return base::Ok{};
 }

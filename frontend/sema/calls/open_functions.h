@@ -29,6 +29,7 @@ class OpenFunctions : public Phase {
   uint32_t string_variant(const Expr& call, uint32_t pou);
   uint32_t instance_of(uint32_t pou, const ParameterTypes& types, NameMap<ir::TypeId> generic);
   std::string signature(const PouInfo& pou);
+  void check_overloads_of(uint32_t first);
 };
 
 }  // namespace frontend

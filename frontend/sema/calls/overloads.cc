@@ -1,6 +1,7 @@
 // Functions that share a name: the one is called whose parameters fit the arguments best.
 #include "frontend/sema/calls/calls.h"
 #include "frontend/sema/calls/open_functions.h"
+#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {
@@ -120,18 +121,31 @@ std::string OpenFunctions::signature(const PouInfo& pou) {
 // Names in the program are unique: further functions are called after their parameters.
 void OpenFunctions::check_overloads() {
   for (uint32_t first = 0; first < sema_.declared.pous.size(); ++first) {
-    for (uint32_t pou = sema_.declared.pous[first].overload; pou != kNoPou;
-         pou = sema_.declared.pous[pou].overload) {
-      std::string text = signature(sema_.declared.pous[pou]);
-      if (ir::same_name(text, signature(sema_.declared.pous[first]))) {
-        error(DiagnosticCode::kDuplicateName, sema_.declared.pous[pou].decl->name.span,
-              "`" + text + "` is declared twice",
-              "functions of one name differ in their parameters");
-        return;
-      }
-      if (!sema_.declared.pous[pou].open)
-        sema_.program.pous[sema_.declared.pous[pou].id.index].name = std::move(text);
+    if (sema_.declared.pous[first].overload == kNoPou) continue;
+    const auto head = sema_.declared.pou_names.find(sema_.declared.pous[first].name);
+    if (head != sema_.declared.pou_names.end() && head->second == first) check_overloads_of(first);
+  }
+}
+
+// What is declared twice is no choice for calls, which would be ambiguous.
+void OpenFunctions::check_overloads_of(uint32_t first) {
+  NameMap<uint32_t> seen;
+  const auto kept = [&](const PouInfo& pou) { return sema_.declared.keep_name(signature(pou)); };
+  seen.emplace(kept(sema_.declared.pous[first]), first);
+  for (uint32_t* link = &sema_.declared.pous[first].overload; *link != kNoPou;) {
+    PouInfo& pou = sema_.declared.pous[*link];
+    const std::string_view text = kept(pou);
+    const auto [same, is_new] = seen.emplace(text, *link);
+    if (is_new) {
+      if (!pou.open) sema_.program.pous[pou.id.index].name = text;
+      link = &pou.overload;
+      continue;
     }
+    const base::SourceSpan here = pou.decl->name.span;
+    const base::SourceSpan other = sema_.declared.pous[same->second].decl->name.span;
+    error(DiagnosticCode::kDuplicateName, here, declared_twice(sema_.sources, text, here, other),
+          "functions of one name differ in their parameters");
+    *link = pou.overload;
   }
 }
 

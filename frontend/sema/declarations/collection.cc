@@ -2,6 +2,7 @@
 #include "frontend/sema/declarations/collection.h"
 #include "frontend/parse/global_lists.h"
 #include "frontend/sema/configuration/configuration.h"
+#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/interfaces.h"
 #include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/declarations/rename_rules.h"
@@ -79,10 +80,13 @@ void Collection::collect_types() {
     }
     const std::string_view name =
         sema_.namespaces.declare(NameSort::kDeclaration, decl.scope, decl.name, decl.access);
-    if (!sema_.declared.types.emplace(name, decl.spec).second ||
-        sema_.declared.pou_names.contains(name)) {
-      error(DiagnosticCode::kDuplicateName, decl.name.span,
-            "`" + std::string(name) + "` is declared twice");
+    const auto [type, added] = sema_.declared.types.emplace(name, decl.spec);
+    const auto pou = sema_.declared.pou_names.find(name);
+    if (!added || pou != sema_.declared.pou_names.end()) {
+      const base::SourceSpan other = pou == sema_.declared.pou_names.end()
+                                         ? sema_.facts.specs[type->second.index].name.span
+                                         : sema_.declared.pous[pou->second].decl->name.span;
+      declared_twice(name, decl.name.span, other);
       continue;
     }
     declare_type(decl, name);
@@ -152,18 +156,25 @@ void Collection::collect_enumerators(SpecId spec, ScopeId scope, Access access) 
   }
 }
 
+void Collection::declared_twice(std::string_view name, base::SourceSpan here,
+                                base::SourceSpan other) {
+  error(DiagnosticCode::kDuplicateName, here,
+        frontend::declared_twice(sema_.sources, name, here, other));
+}
+
 // `name`: by which the scope knows it, when that is not its own.
 VarId Collection::add_variable(Variable variable, NameMap<VarId>& scope, std::string_view name) {
   VarId id(static_cast<uint32_t>(sema_.declared.variables.size()));
   if (name.empty()) name = variable.name.text;
   if (!scope.emplace(name, id).second) {
     const Variable& first = sema_.declared.variables[scope[name].index];
-    std::string where = first.decl == nullptr
-                            ? "the function's result has the function's name"
-                            : "first declared in line " +
-                                  std::to_string(sema_.sources.locate(first.name.span.begin).line);
-    error(DiagnosticCode::kDuplicateName, variable.name.span,
-          "`" + std::string(name) + "` is declared twice; " + where);
+    if (first.decl != nullptr) {
+      declared_twice(name, variable.name.span, first.name.span);
+    } else {
+      error(DiagnosticCode::kDuplicateName, variable.name.span,
+            "`" + std::string(name) +
+                "` is declared twice; the function's result has the function's name");
+    }
     return {};
   }
   sema_.declared.variables.push_back(variable);
@@ -195,8 +206,7 @@ void Collection::collect_pous() {
       sema_.declared.pous[last].overload = static_cast<uint32_t>(sema_.declared.pous.size());
       add_pou(decl, false, name);
     } else {
-      error(DiagnosticCode::kDuplicateName, decl.name.span,
-            "`" + std::string(name) + "` is declared twice");
+      declared_twice(name, decl.name.span, sema_.declared.pous[same->second].decl->name.span);
     }
   }
 }

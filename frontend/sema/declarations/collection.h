@@ -27,6 +27,7 @@ class Collection : public Phase {
 
  private:
   // collection.cc
+  void declared_twice(std::string_view name, base::SourceSpan here, base::SourceSpan other);
   void collect_types();
   void declare_type(const TypeDecl& decl, std::string_view name);
   void collect_library_type(const TypeDecl& decl);
