@@ -19,9 +19,10 @@ class Coverage;  // coverage.h
 
 struct CompileOptions {
   Dialect dialect = Dialect::kCodesys;
-  std::string name = "project";  // used when there is no CONFIGURATION
-  std::string resource;          // of several; empty: the first
-  std::string likely_resource;   // instead of the first, if there is one of that name
+  std::string name = "project";    // used when there is no CONFIGURATION
+  std::string resource;            // of several; empty: the first
+  base::SourceSpan resource_at{};  // where a file of settings says it
+  std::string likely_resource;     // instead of the first, if there is one of that name
   // Conditional compilation: NAME or NAME=VALUE, as if {define NAME 'VALUE'} headed each file.
   std::vector<std::string> defines;
   bool strict_strings = false;  // LEFT, MID, INSERT, ... out of range trap, instead of being cut

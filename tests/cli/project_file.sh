@@ -89,7 +89,7 @@ cat >wanted <<'T'
 plant/stc.toml:2:2: error[R0506]: unknown key `dialetc`; did you mean `dialect`?
     2 | 	dialetc = "codesys"
       | 	^~~~~~~
-   help: The text names line and column; docs/PROJECT.md lists the keys.
+   help: `stc explain stc.toml` lists the keys.
 T
 cmp wanted err || fail "the shape of a mistake"
 refused 1:12 '`dialect` must be "iec", "codesys" or "twincat", not "codesis"; did you mean `codesys`\?' <<'T'
@@ -107,7 +107,7 @@ refused 2:1 'unknown key `outputs.frobnicate`; known in \[outputs\] are safe' <<
 [outputs]
 frobnicate = 1
 T
-refused 2:1 'unknown key `frobnicate.x`; known are name, .* and the tables' <<'T'
+refused 2:1 'unknown key `frobnicate.x`; known are name, .* and the tables \[slack\], \[change\], \[warnings\]' <<'T'
 [frobnicate]
 x = 1
 T
@@ -133,6 +133,86 @@ T
 refused 1:17 'the text of `sources` has control characters' <<'T'
 sources = ["a", "b\tc"]
 T
+# Tables without keys, and where the caret stands.
+refused 1:2 'unknown table `frobnicate`; known are \[slack\], .*\[units\] and \[devices.NAME\]' <<'T'
+[frobnicate]
+T
+refused 2:2 'unknown table `slak`; did you mean `slack`\?' <<'T'
+[slack]
+[slak]
+T
+printf '[slack]\n[change]\n[warnings]\n[outputs]\n[format]\n[units]\n[devices]\nsources = ["src"]\n' >plant/stc.toml
+expect 7 stc check plant
+said '^plant/stc.toml:8:1: error\[R0507\]: `devices.sources`: a device is a table'
+printf 'sources = ["src"]\n[slack]\n[change]\n[warnings]\n[outputs]\n[format]\n[units]\n[devices]\n' >plant/stc.toml
+expect 0 stc check plant
+refused 2:1 '`name` is given twice' <<'T'
+name = "a"
+name = "b"
+T
+refused 2:17 'not a whole number; write it in decimal digits' <<'T'
+[slack]
+globals_bytes = 0x10
+T
+refused 1:11 '`sources` is empty; leave it out for all sources of the folder' <<'T'
+sources = []
+T
+refused 2:26 '`%QX0.1 = maybe` is no safe value; write' <<'T'
+[outputs]
+safe = ["%QX0.0 = TRUE", "%QX0.1 = maybe"]
+T
+grep -qF '      |                          ^~~~~~~~~~~~~~~~' err || fail "caret below the safe value"
+refused 3:3 'two safe values for a bit of %QB0' <<'T'
+[outputs]
+safe = ["%QX0.0 = TRUE",
+  "%QB0 = 3"]
+T
+refused 4:3 'a safe value at %QB7, but the outputs of this program end before %QB0' <<'T'
+sources = ["src"]
+[outputs]
+safe = [
+  "%QB7 = 3"]
+T
+# What the compiler says of a setting points into the file, too.
+toml <<'T'
+sources = ["src"]
+resource = "Line"  # of several
+T
+expect 1 stc check plant
+said '^plant/stc.toml:2:12: error\[E2018\]: there is no RESOURCE `Line`: nothing declares one'
+said 'help: leave `resource` out'
+grep -qF '      |            ^~~~~~' err || fail "caret below the resource"
+expect 1 stc check plant --format sarif
+said '"uri": *"plant/stc.toml"'
+expect 1 stc check plant --resource Lane
+said '^error\[E2018\]: there is no RESOURCE `Lane`'
+said 'help: leave --resource out'
+cat >plant/two.st <<'ST'
+CONFIGURATION c
+  RESOURCE Line1 ON cpu TASK t (INTERVAL := T#10ms); PROGRAM m WITH t : Main; END_RESOURCE
+  RESOURCE Lane2 ON cpu TASK t (INTERVAL := T#10ms); PROGRAM m WITH t : Main; END_RESOURCE
+END_CONFIGURATION
+ST
+printf 'sources = ["src", "two.st"]\nname = "two"\nresource = "Line2"\n' >plant/stc.toml
+expect 1 stc check plant
+said '^plant/stc.toml:3:12: error\[E2018\]: there is no RESOURCE `Line2`$'
+said 'did you mean `Lane2`|did you mean `Line1`'
+printf 'sources = ["src", "two.st"]\nname = "two"\nresource = "Line1"\n' >plant/stc.toml
+expect 0 stc build plant -o settings.img
+printf 'sources = ["src", "two.st"]\nname = "two"\n' >plant/stc.toml
+expect 0 stc build plant -o option.img --resource Line1
+cmp settings.img option.img || fail "the image depends on where its resource is named"
+rm plant/two.st
+# What has the name of the file, and cannot be read, is not passed over.
+mkdir -p odd/stc.toml
+cp plant/src/lib/double.st odd
+expect 7 stc check odd
+said 'R0502: odd/stc.toml: '
+rmdir odd/stc.toml
+ln -s nowhere.toml odd/stc.toml
+expect 7 stc check odd/double.st
+said 'R050[12]: odd/stc.toml: '
+rm -r odd
 printf 'name = "a\033[2Jb"\n' | refused 1:10 'a text has no control characters'
 echo 'name = "a"' | toml
 expect 2 stc check plant --name "$(printf 'a\033[2J')"
@@ -140,6 +220,19 @@ printf '[devices.press]\ndriver = "modbus"\n' >plant/stc.toml
 expect 7 stc check plant
 said '^plant/stc.toml:2:10: error\[R0507\]: unknown driver "modbus"'
 grep -qF '      |          ^~~~~~~~' err || fail "caret below the driver"
+
+printf '[devices.a]\n[devices.b]\ndriver = "simulated"\nmap = ["bit 0 -> %%IX0.0"]\n' >plant/stc.toml
+expect 7 stc check plant
+said '^plant/stc.toml:1:2: error\[R0507\]: device `a` has no `driver`$'
+for address in 1.2.3.4:99999 1.2.3.4: :502 '[fe80::1' fe80::1:502 1.2.3.4:0 1.2.3.4:x; do
+  printf '[devices.a]\ndriver = "modbus-tcp"\naddress = "%s"\nmap = ["coil 0 -> %%IX0.0"]\n' "$address" >plant/stc.toml
+  expect 7 stc check plant
+  said '^plant/stc.toml:3:11: error\[R0507\]: `.*` is no address: 10.0.0.5:502'
+done
+for address in 1.2.3.4 1.2.3.4:502 press.local:65535 '[fe80::1]' '[fe80::1]:502'; do
+  printf 'sources = ["src"]\n[devices.a]\ndriver = "modbus-tcp"\naddress = "%s"\nmap = ["coil 0 -> %%IX0.0"]\n' "$address" >plant/stc.toml
+  expect 0 stc check plant
+done
 
 # The same of every command, in every form, and from stvm.
 printf 'nmae = "x"\n' >plant/stc.toml
@@ -191,3 +284,4 @@ ST
 sed 's/^# //' page/stc.toml >all.toml && mv all.toml page/stc.toml
 expect 0 stc check page
 grep -qE '^(resource|safe|health) = ' page/stc.toml || fail "nothing of the page needs a program any more"
+said '^marked/stc.toml:5:2: error\[R0506\]: table `warnings` is given twice'

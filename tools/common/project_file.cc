@@ -35,6 +35,11 @@ base::Status check_texts(const std::string& path, const TomlTable& table) {
   return base::Ok{};
 }
 
+bool has_entry(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(path, error));
+}
+
 }  // namespace
 
 base::Result<ProjectFile> read_project_file(const std::string& path) {
@@ -44,10 +49,11 @@ base::Result<ProjectFile> read_project_file(const std::string& path) {
 }
 
 base::Result<ProjectFile> parse_project_file(const std::string& path, std::string text) {
-  base::Result<TomlTable> table = parse_toml(path, text);
+  TomlHeaders headers;
+  base::Result<TomlTable> table = parse_toml(path, text, &headers);
   if (!table.ok()) return table.error();
   if (base::Status texts = check_texts(path, *table); !texts.ok()) return texts.error();
-  return ProjectFile{path, std::move(text), std::move(*table)};
+  return ProjectFile{path, std::move(text), std::move(*table), std::move(headers)};
 }
 
 std::string nearest_project_file(const std::string& path) {
@@ -55,13 +61,13 @@ std::string nearest_project_file(const std::string& path) {
   fs::path folder = fs::path(path);
   if (!fs::is_directory(folder, error)) folder = folder.parent_path();
   // Messages name files as they were typed.
-  if (fs::is_regular_file(folder / kProjectFile, error)) return (folder / kProjectFile).string();
+  if (has_entry(folder / kProjectFile)) return (folder / kProjectFile).string();
   folder = fs::absolute(folder, error).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   while (folder != folder.parent_path()) {
     folder = folder.parent_path();
     const fs::path found = folder / kProjectFile;
-    if (!fs::is_regular_file(found, error)) continue;
+    if (!has_entry(found)) continue;
     const fs::path near = found.lexically_proximate(fs::current_path(error));
     return std::min(near.string(), found.string(),
                     [](const auto& a, const auto& b) { return a.size() < b.size(); });

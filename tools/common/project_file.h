@@ -35,6 +35,7 @@ struct ProjectFile {
   std::string path;
   std::string text;
   TomlTable table;
+  TomlHeaders headers;
 
   const TomlValue* find(std::string_view key) const;
   // Takes the value of `key` over into `out`, when there is one of the kind T.
@@ -60,6 +61,7 @@ base::Result<ProjectFile> read_checked_project_file(const std::string& path);
 std::string warning_code_fault(std::string_view code);
 
 // The stc.toml that is nearest to `path`: in that folder, or that of the file, or above it; or "".
+// It may be a folder or a link that leads nowhere, which cannot be read then.
 std::string nearest_project_file(const std::string& path);
 
 }  // namespace tools

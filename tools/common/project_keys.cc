@@ -26,6 +26,9 @@ constexpr ProjectKey kKeys[] = {
 // "slack." of "slack.free_bytes"; "" of a key outside of tables.
 std::string_view table_of(std::string_view key) { return key.substr(0, key.find('.') + 1); }
 
+constexpr std::string_view kKnownTables =
+    "[slack], [change], [warnings], [outputs], [format], [units] and [devices.NAME]";
+
 bool is_table(std::string_view prefix) {
   return std::any_of(std::begin(kKeys), std::end(kKeys),
                      [&](const ProjectKey& row) { return table_of(row.name) == prefix; });
@@ -44,8 +47,28 @@ std::string known_keys(std::string_view table) {
     return base::joined({"known in [", table.substr(0, table.size() - 1), "] are ", known,
                          codes ? " and the codes of warnings" : ""});
   }
-  return base::joined({"known are ", known, " and the tables [slack], [change], [outputs], ",
-                       "[format], [units] and [devices.NAME]"});
+  return base::joined({"known are ", known, " and the tables ", kKnownTables});
+}
+
+// Of a table without keys: these are refused one by one.
+std::string unknown_table(std::string_view name) {
+  base::NearestName nearest(name);
+  for (const ProjectKey& row : kKeys) {
+    const std::string_view table = table_of(row.name);
+    if (!table.empty()) nearest.offer(table.substr(0, table.size() - 1));
+  }
+  nearest.offer("units");
+  if (!nearest.best().empty()) {
+    return base::joined({"unknown table `", name, "`", nearest.question()});
+  }
+  return base::joined({"unknown table `", name, "`; known are ", kKnownTables});
+}
+
+base::Status check_header(const std::string& file, std::string_view prefix, TomlPlace place) {
+  const bool known = prefix.starts_with(kDeviceTables) || prefix == kUnitTable || is_table(prefix);
+  if (known) return base::Ok{};
+  return toml_error(file, place.line, place.column,
+                    unknown_table(prefix.substr(0, prefix.size() - 1)));
 }
 
 std::string unknown_key(std::string_view key) {
@@ -143,6 +166,10 @@ base::Status check_project_keys(const ProjectFile& file) {
   for (const auto& [name, value] : file.table) {
     if (name.starts_with(kDeviceTables) || name.starts_with(kUnitTable)) continue;
     if (base::Status known = check_key(file.path, name, value); !known.ok()) return known;
+  }
+  for (const auto& [prefix, header] : file.headers) {
+    if (base::Status known = check_header(file.path, prefix, header.place); !known.ok())
+      return known;
   }
   return base::Ok{};
 }

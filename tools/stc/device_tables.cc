@@ -1,10 +1,10 @@
 #include "tools/stc/device_tables.h"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 
 #include "ir/types/address_text.h"
-#include "tools/common/project_file.h"
 #include "tools/stc/map_entry.h"
 
 namespace stc {
@@ -21,6 +21,20 @@ bool is_flag(std::string_view key) {
   });
 }
 
+// HOST, HOST:PORT, [IPV6] or [IPV6]:PORT, as the drivers take it; that the host is there shows when
+// the controller runs.
+bool is_endpoint(std::string_view text) {
+  const bool bracketed = text.starts_with('[');
+  const size_t end = std::min(text.find(bracketed ? ']' : ':'), text.size());
+  if (end <= (bracketed ? 1u : 0u) || (bracketed && end == text.size())) return false;
+  const std::string_view rest = text.substr(bracketed ? end + 1 : end);
+  if (rest.empty()) return true;
+  unsigned port = 0;
+  const auto [last, code] = std::from_chars(rest.data() + 1, rest.data() + rest.size(), port);
+  const bool whole = code == std::errc() && last == rest.data() + rest.size();
+  return rest[0] == ':' && whole && port > 0 && port <= 65535;
+}
+
 // Where the parts of a device stand, for what is found behind them.
 struct Places {
   tools::TomlPlace device;  // its driver
@@ -31,10 +45,10 @@ struct Places {
 
 class Reader {
  public:
-  Reader(std::string_view file, const tools::TomlTable& table) : file_(file), table_(table) {}
+  explicit Reader(const tools::ProjectFile& file) : file_(file.path), settings_file_(file) {}
 
   base::Result<std::vector<ProjectDevice>> run() {
-    for (const auto& [key, value] : table_) {
+    for (const auto& [key, value] : settings_file_.table) {
       if (!key.starts_with(tools::kDeviceTables)) continue;
       const std::string_view rest = std::string_view(key).substr(tools::kDeviceTables.size());
       const size_t dot = rest.find('.');
@@ -46,6 +60,7 @@ class Reader {
         return added.error();
       }
     }
+    if (base::Status tables = check_tables(); !tables.ok()) return tables.error();
     if (base::Status whole = check_whole(); !whole.ok()) return whole.error();
     std::vector<ProjectDevice> out;
     for (size_t i = 0; i < devices_.size(); ++i) {
@@ -58,6 +73,20 @@ class Reader {
   }
 
  private:
+  // Those without keys, too.
+  base::Status check_tables() const {
+    for (const auto& [table, header] : settings_file_.headers) {
+      const size_t begin = tools::kDeviceTables.size();
+      if (!table.starts_with(tools::kDeviceTables) || table.size() == begin) continue;
+      const std::string name = table.substr(begin, table.size() - begin - 1);
+      const bool has_keys =
+          std::any_of(devices_.begin(), devices_.end(),
+                      [&](const ir::Device& device) { return device.name == name; });
+      if (!has_keys) return at(file_, header.place, "device `" + name + "` has no `driver`");
+    }
+    return base::Ok{};
+  }
+
   // Keys come sorted by device, so the last one is the one to add to.
   base::Status add(std::string_view name, std::string_view key, const tools::TomlValue& value) {
     if (devices_.empty() || devices_.back().name != name) {
@@ -156,6 +185,10 @@ class Reader {
         }
         const std::string bad = ir::bad_value(*row, setting.value);
         if (!bad.empty()) return at(file_, value.place, "`" + setting.key + "` " + bad);
+        if (row->key == "address" && !is_endpoint(setting.value)) {
+          return at(file_, value.place,
+                    "`" + setting.value + "` is no address: 10.0.0.5:502, [fe80::1]:502");
+        }
         if (row->kind == ir::SettingKind::kFlag && !devices_[device].map.empty()) {
           return at(file_, value.place,
                     "`" + setting.key + "` is for a device without `map`; in a map, `<->` says it");
@@ -199,7 +232,7 @@ class Reader {
   };
 
   std::string_view file_;
-  const tools::TomlTable& table_;
+  const tools::ProjectFile& settings_file_;
   std::vector<ir::Device> devices_;
   std::vector<Places> places_;  // parallel
   std::vector<GivenSetting> settings_;
@@ -207,9 +240,8 @@ class Reader {
 
 }  // namespace
 
-base::Result<std::vector<ProjectDevice>> read_devices(std::string_view file,
-                                                      const tools::TomlTable& table) {
-  return Reader(file, table).run();
+base::Result<std::vector<ProjectDevice>> read_devices(const tools::ProjectFile& file) {
+  return Reader(file).run();
 }
 
 base::Result<std::vector<ir::Device>> devices_of(const std::vector<ProjectDevice>& devices,

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 #include "ir/bytecode/devices.h"
-#include "tools/common/toml.h"
+#include "tools/common/project_file.h"
 
 namespace stc {
 
@@ -18,9 +18,8 @@ struct ProjectDevice {
   std::string where;     // "stc.toml:3:1"
 };
 
-// Sorted by name. Other keys of `table` are left alone.
-base::Result<std::vector<ProjectDevice>> read_devices(std::string_view file,
-                                                      const tools::TomlTable& table);
+// Sorted by name. Other keys of the file are left alone.
+base::Result<std::vector<ProjectDevice>> read_devices(const tools::ProjectFile& file);
 
 // The devices of one of the resources `all`; of a project with one resource at most (`all` is
 // empty), all devices. kBadMapping for a device that does not say which resource has it.

@@ -45,13 +45,14 @@ void apply_to_sources(const ProjectFile& file, Project& project) {
 }
 
 // What concerns the program as a whole.
-base::Status apply_to_program(const ProjectFile& file, Project& project) {
-  base::Result<std::vector<ProjectDevice>> devices = read_devices(file.path, file.table);
+base::Status apply_to_program(const ProjectFile& file, Project& project,
+                              std::optional<ProjectFile>& quoted) {
+  base::Result<std::vector<ProjectDevice>> devices = read_devices(file);
   if (!devices.ok()) return devices.error();
   project.devices = std::move(*devices);
   if (file.take<std::string>("name", project.name)) project.named = true;
   file.take<bool>("embed_sources", project.embed_sources);
-  file.take<std::string>("resource", project.compile.resource);
+  if (file.take<std::string>("resource", project.compile.resource)) quoted = file;
   base::Result<UnitSettings> units = parse_unit_settings(file);
   if (!units.ok()) return units.error();
   project.units = std::move(*units);
@@ -63,10 +64,27 @@ base::Status apply_to_program(const ProjectFile& file, Project& project) {
   return base::Ok{};
 }
 
-// The stc.toml that is nearest to `path` (docs/PROJECT.md). `sources` is replaced when `path` is
+// What the compiler says of `resource` points into the file.
+void quote_resource(const ProjectFile& file, Project& project) {
+  const tools::TomlPlace place = file.find("resource")->place;
+  const base::SourcePos begin = project.sources.add(file.path, file.text, base::TextUse::kQuoted);
+  size_t at = 0;
+  for (uint32_t line = 1; line < place.line; ++line) at = file.text.find('\n', at) + 1;
+  at += place.column - 1;
+  const size_t end = file.text.find_first_of(" \t\r\n#", at);
+  const auto pos = [&](size_t offset) {
+    return base::SourcePos{begin.offset +
+                           static_cast<uint32_t>(std::min(offset, file.text.size()))};
+  };
+  project.compile.resource_at = {pos(at), pos(end)};
+}
+
+// What is written into `quoted` belongs among the sources, for messages. The stc.toml that is
+// nearest to `path` (docs/PROJECT.md). `sources` is replaced when `path` is
 // the folder of a file that lists its own.
 base::Status apply_project_file(const std::string& path, Project& project,
-                                std::vector<std::string>& sources) {
+                                std::vector<std::string>& sources,
+                                std::optional<ProjectFile>& quoted) {
   const std::string nearest = tools::nearest_project_file(path);
   if (nearest.empty()) return base::Ok{};
   base::Result<ProjectFile> file = tools::read_checked_project_file(nearest);
@@ -78,7 +96,8 @@ base::Status apply_project_file(const std::string& path, Project& project,
     return tools::toml_error(nearest, place.line, place.column, mistake->what);
   }
   if (whole) {
-    if (base::Status applied = apply_to_program(*file, project); !applied.ok()) return applied;
+    if (base::Status applied = apply_to_program(*file, project, quoted); !applied.ok())
+      return applied;
     if (const tools::TomlValue* const list = file->find("sources")) {
       auto listed = listed_sources(*file, *list);
       if (!listed.ok()) return listed.error();
@@ -109,7 +128,8 @@ base::Status count_bytes(uint64_t& bytes, const std::string& file, const std::st
                                                   " bytes in all"};
 }
 
-base::Result<std::vector<std::string>> expand(const std::string& path, Project& project) {
+base::Result<std::vector<std::string>> expand(const std::string& path, Project& project,
+                                              std::optional<ProjectFile>& quoted) {
   base::Result<std::vector<std::string>> found = source_files(path);
   if (!found.ok()) return found;
   const bool folder = tools::is_folder(path);
@@ -118,7 +138,7 @@ base::Result<std::vector<std::string>> expand(const std::string& path, Project& 
     if (!others.ok()) return others;
     found->insert(found->end(), others->begin(), others->end());
   }
-  base::Status status = apply_project_file(path, project, *found);
+  base::Status status = apply_project_file(path, project, *found, quoted);
   if (!status.ok()) return status.error();
   if (found->empty()) {
     return base::Error{base::Refusal::kFileNotFound,
@@ -149,10 +169,11 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
   Project project;
   project.name = project_name(paths.front());
   project.paths = paths;
+  std::optional<ProjectFile> quoted;
   Importer importer(project.sources);
   uint64_t bytes = 0;
   for (const std::string& path : paths) {
-    base::Result<std::vector<std::string>> files = expand(path, project);
+    base::Result<std::vector<std::string>> files = expand(path, project, quoted);
     if (!files.ok()) return files.error();
     for (const std::string& file : *files) {
       if (needs_import(file)) {
@@ -180,6 +201,7 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
     if (!fits.ok()) return fits.error();
     project.sources.add(name, std::move(made.source.text));
   }
+  if (quoted) quote_resource(*quoted, project);
   project.imported = std::move(importer.findings);
   project.kept = std::move(importer.kept);
   if (dialect) project.compile.dialect = *dialect;

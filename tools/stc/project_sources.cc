@@ -105,6 +105,10 @@ base::Result<Files> importable_files(const std::string& path, bool any_xml) {
 base::Result<Files> listed_sources(const tools::ProjectFile& file, const tools::TomlValue& list) {
   const fs::path folder = fs::path(file.path).parent_path();
   const auto& elements = *std::get_if<Files>(&list.data);
+  if (elements.empty()) {
+    return tools::toml_error(file.path, list.place.line, list.place.column,
+                             "`sources` is empty; leave it out for all sources of the folder");
+  }
   Files out;
   std::set<std::string> known;
   for (size_t i = 0; i < elements.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "frontend/lex/literals.h"
 #include "ir/types/address_text.h"
@@ -108,23 +109,28 @@ std::string byte_text(uint32_t bit_offset) { return "%QB" + std::to_string(bit_o
 
 base::Result<SafeSettings> parse_safe_settings(const std::string& file,
                                                const tools::TomlValue& value) {
-  const auto wrong = [&](std::string what) {
-    return tools::toml_error(file, value.line, value.column, std::move(what));
+  const auto wrong = [&](tools::TomlPlace place, std::string what) {
+    return tools::toml_error(file, place.line, place.column, std::move(what));
   };
   const auto* list = std::get_if<std::vector<std::string>>(&value.data);
-  if (list == nullptr) return wrong("`outputs.safe` must be a list of texts");
-  SafeSettings settings{file, value.line, value.column, {}};
-  for (const std::string& text : *list) {
+  if (list == nullptr) return wrong(value.place, "`outputs.safe` must be a list of texts");
+  std::vector<std::pair<ir::SafeOutput, tools::TomlPlace>> entries;
+  for (size_t i = 0; i < list->size(); ++i) {
+    const std::string& text = (*list)[i];
     const std::optional<ir::SafeOutput> row = parse_entry(text);
-    if (!row) return wrong("`" + text + "` is no safe value; " + kForms);
-    settings.rows.push_back(*row);
+    if (!row) return wrong(value.places[i], "`" + text + "` is no safe value; " + kForms);
+    entries.emplace_back(*row, value.places[i]);
   }
-  std::sort(settings.rows.begin(), settings.rows.end(),
-            [](const auto& a, const auto& b) { return a.bit_offset < b.bit_offset; });
-  for (size_t i = 1; i < settings.rows.size(); ++i) {
-    const ir::SafeOutput& before = settings.rows[i - 1];
-    if (before.bit_offset + before.bits <= settings.rows[i].bit_offset) continue;
-    return wrong("two safe values for a bit of " + byte_text(settings.rows[i].bit_offset));
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    return a.first.bit_offset < b.first.bit_offset;
+  });
+  SafeSettings settings{file, {}, {}};
+  for (const auto& [row, place] : entries) {
+    const bool meets = !settings.rows.empty() &&
+                       settings.rows.back().bit_offset + settings.rows.back().bits > row.bit_offset;
+    if (meets) return wrong(place, "two safe values for a bit of " + byte_text(row.bit_offset));
+    settings.rows.push_back(row);
+    settings.places.push_back(place);
   }
   return settings;
 }
@@ -138,9 +144,10 @@ std::vector<ir::SafeOutput> safe_rows_inside(const SafeSettings& settings, uint3
 }
 
 base::Status check_safe_settings(const SafeSettings& settings, uint32_t output_bytes) {
-  for (const ir::SafeOutput& row : settings.rows) {
+  for (size_t i = 0; i < settings.rows.size(); ++i) {
+    const ir::SafeOutput& row = settings.rows[i];
     if (uint64_t{row.bit_offset} + row.bits <= uint64_t{output_bytes} * 8) continue;
-    return tools::toml_error(settings.file, settings.line, settings.column,
+    return tools::toml_error(settings.file, settings.places[i].line, settings.places[i].column,
                              "a safe value at " + byte_text(row.bit_offset) +
                                  ", but the outputs of this program end before %QB" +
                                  std::to_string(output_bytes));

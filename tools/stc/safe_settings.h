@@ -12,10 +12,9 @@
 namespace stc {
 
 struct SafeSettings {
-  std::string file;  // for messages; empty: there are none
-  uint32_t line = 0;
-  uint32_t column = 0;
-  std::vector<ir::SafeOutput> rows;  // sorted, disjoint
+  std::string file;                      // for messages; empty: there are none
+  std::vector<ir::SafeOutput> rows;      // sorted, disjoint
+  std::vector<tools::TomlPlace> places;  // of them
 };
 
 // Errors: kBadProject, with the entry and its place.

@@ -67,7 +67,10 @@ static base::Result<std::string> project_here() {
 }
 
 base::Status apply_compile_options(const tools::Options& options, Project& project) {
-  if (options.has("--resource")) project.compile.resource = options.text("--resource");
+  if (options.has("--resource")) {
+    project.compile.resource = options.text("--resource");
+    project.compile.resource_at = {};
+  }
   if (const auto mistake = mistake_in(options.all("--define"))) {
     return base::Error{base::Refusal::kUsage, "--define: " + mistake->what};
   }

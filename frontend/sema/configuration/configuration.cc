@@ -55,11 +55,12 @@ bool check_resource_names(const Phase& phase, const ConfigDecl& config) {
 
 // One image runs one resource: the one that was asked for, else the first.
 void Configuration::choose_resource() {
+  const base::SourceSpan asked = sema_.options.resource_at;
   if (sema_.tree.configs.empty()) {
     if (sema_.options.resource.empty()) return;
-    return error(DiagnosticCode::kUnknownResource, {},
+    return error(DiagnosticCode::kUnknownResource, asked,
                  "there is no RESOURCE `" + sema_.options.resource + "`: nothing declares one",
-                 "leave --resource out");
+                 asked.begin.valid() ? "leave `resource` out" : "leave --resource out");
   }
   const ConfigDecl& config = sema_.tree.configs[0];
   if (sema_.tree.configs.size() > 1) {
@@ -75,7 +76,7 @@ void Configuration::choose_resource() {
     if (wanted && sema_.declared.resource == nullptr) sema_.declared.resource = &resource;
   }
   if (sema_.declared.resource == nullptr && !sema_.options.resource.empty()) {
-    error(DiagnosticCode::kUnknownResource, config.span,
+    error(DiagnosticCode::kUnknownResource, asked.begin.valid() ? asked : config.span,
           "there is no RESOURCE `" + sema_.options.resource + "`", nearest.fix());
   } else if (named && sema_.options.resource.empty() && config.resources.size() > 1) {
     warning(DiagnosticCode::kResourceChosen, config.resources[1].name.span,
