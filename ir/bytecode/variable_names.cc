@@ -26,7 +26,9 @@ size_t end_of_part(std::string_view path, size_t at) {
 
 // What the first part that is not there was meant to be. Globals of lists and namespaces have a dot
 // in their name, so they are compared with as much of the path.
-std::string meant(const NameIndex& names, std::string_view path) {
+std::string meant(const NameIndex& names, std::string_view path, std::string_view why) {
+  // Of a list that is no part of names find_symbol() has said what to write.
+  if (why.find("qualified_only") != why.npos) return {};
   const Image& image = names.image();
   TypeId owner = image.globals;
   size_t at = 0;
@@ -44,6 +46,11 @@ std::string meant(const NameIndex& names, std::string_view path) {
   for (const Member& member : image.types[owner].members) {
     if (same_name(member.name, name)) return {};  // it is there, and what is wrong stands after it
     if (!is_listed(member)) continue;
+    const std::string_view whole = member.name;
+    const std::string_view last = whole.substr(whole.rfind('.') + 1);
+    if (last.size() != whole.size() && same_name(last, name)) {
+      return base::joined({"; did you mean `", whole, "`?"});
+    }
     (member.name.find('.') == std::string::npos ? nearest : listed).offer(member.name);
   }
   if (at == 0) {
@@ -125,7 +132,8 @@ base::Result<NamedSymbol> named_symbol(const NameIndex& names, std::string_view 
     base::Result<NamedSymbol> better = found_at(std::move(*other));
     if (better.ok()) return better;
   }
-  return base::Error{found.error().refusal, found.error().text + meant(names, name)};
+  const std::string& why = found.error().text;
+  return base::Error{found.error().refusal, why + meant(names, name, why)};
 }
 
 base::Result<Symbol> named_symbol(const Image& image, std::string_view name) {

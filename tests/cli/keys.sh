@@ -20,6 +20,12 @@ program b.st 2
 program c.st 3
 stc build -q a.st -o a.img
 
+# What the first word was meant to be is said before what is missing of it.
+expect 2 stc key sgin a.img
+said 'key: `sgin` is none of new, sign, verify, revoke; did you mean `sign`\?'
+expect 2 stc key frobnicate a.img
+said 'key: `frobnicate` is none of new, sign, verify, revoke$'
+
 # Private keys are private, and none is written over.
 [ "$(stat -c %a office.key)" = 600 ] || fail "others can read the key"
 expect 7 stc key new office -o office.key

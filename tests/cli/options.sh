@@ -31,6 +31,15 @@ done
 expect 0 stvm version
 said '^protocol +14$'
 
+# The programs beside it that know a broker say what they were built with.
+for tool in stvm-agent stvm-fleet; do
+  expect 0 "$bin/$tool" --version
+  said "^$tool $version$"
+  said '^adapters +(none|mqtt)$'
+  expect 0 "$bin/$tool" --version --format json
+  json "d['tool'] == '$tool' and d['adapters'] in ([], ['mqtt'])"
+done
+
 # R-01 The commit is looked up in every build, and the file is written only when it is another one.
 if command -v git >git.path; then
   identity() {
@@ -103,6 +112,10 @@ expect 2 stc build good.st --outptu x.img
 said 'build: unknown option --outptu; did you mean `--output`\?'
 expect 2 stc build good.st --frobnicate
 said 'unknown option --frobnicate$'
+expect 2 stvm serve --format json
+said 'serve: unknown option --format$'
+expect 2 stvm fleet chnage x
+said '`chnage` is none of its verbs: change, .*, watch; did you mean `change`\?'
 expect 2 stc check good.st --format jsno
 said 'check: --format is text, json, sarif or github, not `jsno`; did you mean `json`\?'
 expect 2 stvm run good.img --tier nativ
@@ -114,6 +127,12 @@ expect 7 run --print Mian.counter
 said '`Mian` is neither a program nor a global variable; did you mean `Main`\?'
 expect 7 run --print Gvl.speed
 said '`Gvl` is neither .*: the variable is `speed`$'
+printf "VAR_GLOBAL Maid : INT; END_VAR\n{attribute 'qualified_only'}\nVAR_GLOBAL Y1 : INT; Z1 : INT; END_VAR\n" >List.st
+printf 'VAR_GLOBAL Y : INT; END_VAR\nPROGRAM Main Y := Y + 1; END_PROGRAM\n' >Plain.st
+expect 7 stvm run List.st Plain.st --virtual-time --scans 1 --print Plain.Y
+said '`Plain` is neither .*: the variable is `Y`$'
+expect 7 stvm run List.st Plain.st --virtual-time --scans 1 --print Z1
+said '`Z1` is neither a program nor a global variable; did you mean `List.Z1`\?'
 expect 7 run --print sped
 said 'did you mean `speed`\?'
 expect 7 run --print Main.conuter

@@ -150,7 +150,7 @@ refused 2:1 '`name` is given twice' <<'T'
 name = "a"
 name = "b"
 T
-refused 2:17 'not a whole number; write it in decimal digits' <<'T'
+refused 2:17 'not a whole number in decimal digits' <<'T'
 [slack]
 globals_bytes = 0x10
 T
@@ -220,6 +220,17 @@ printf '[devices.press]\ndriver = "modbus"\n' >plant/stc.toml
 expect 7 stc check plant
 said '^plant/stc.toml:2:10: error\[R0507\]: unknown driver "modbus"'
 grep -qF '      |          ^~~~~~~~' err || fail "caret below the driver"
+device() { # device KEY MEANT
+  printf '[devices.press]\ndriver = "modbus-tcp"\n%s = "1"\nmap = ["coil 0 -> %%IX0.0"]\n' "$1" >plant/stc.toml
+  expect 7 stc check plant
+  said "^plant/stc.toml:3:1: error\\[R0507\\]: unknown key \`$1\`; driver .*; did you mean \`$2\`\\?"
+}
+device adress address
+device period period_ms
+device mapp map
+printf '[devices.press]\ndriver = "modbus_tcp"\n' >plant/stc.toml
+expect 7 stc check plant
+said 'unknown driver "modbus_tcp"; it must be one of .*; did you mean `modbus-tcp`\?'
 
 printf '[devices.a]\n[devices.b]\ndriver = "simulated"\nmap = ["bit 0 -> %%IX0.0"]\n' >plant/stc.toml
 expect 7 stc check plant

@@ -66,8 +66,9 @@ int run_help(const Tool& tool, const Options& options) {
 }
 
 int run_version(const Tool& tool, const Options& options) {
-  return say(options.text("--format") == "json" ? version_json(tool.name, tool.facts)
-                                                : version_text(tool.name, tool.facts));
+  const char* const name = tool.program == nullptr ? tool.name : tool.program;
+  return say(options.text("--format") == "json" ? version_json(name, tool.facts)
+                                                : version_text(name, tool.facts));
 }
 
 // What --format says, also on a command line with mistakes, which are said in that form.

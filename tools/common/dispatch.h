@@ -30,6 +30,7 @@ struct Tool {
   std::vector<VersionFact> facts;  // after version and commit
   std::string notes;               // at the end of the overview
   std::vector<NamedForm> forms;
+  const char* program = nullptr;  // as `--version` calls it, when it has another name
 };
 
 int dispatch(const Tool& tool, int argc, char** argv);

@@ -136,10 +136,12 @@ class OptionParser {
   }
 
   base::Error unknown(std::string_view given) const {
-    base::NearestName nearest(given);
-    for (const OptionRow& row : command_.options) nearest.offer(long_name(row));
-    for (const OptionRow& row : kEveryCommand) nearest.offer(long_name(row));
-    return usage({"unknown option ", given, nearest.question()});
+    // The dashes are no letters of the name.
+    base::NearestName nearest(given.substr(std::min(given.find_first_not_of('-'), given.size())));
+    for (const OptionRow& row : command_.options) nearest.offer(long_name(row).substr(2));
+    for (const OptionRow& row : kEveryCommand) nearest.offer(long_name(row).substr(2));
+    if (nearest.best().empty()) return usage({"unknown option ", given});
+    return usage({"unknown option ", given, "; did you mean `--", nearest.best(), "`?"});
   }
 
   base::Status check_together() const {

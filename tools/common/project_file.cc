@@ -1,5 +1,7 @@
 #include "tools/common/project_file.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -36,8 +38,8 @@ base::Status check_texts(const std::string& path, const TomlTable& table) {
 }
 
 bool has_entry(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(fs::symlink_status(path, error));
+  struct stat info {};
+  return ::lstat(path.c_str(), &info) == 0;
 }
 
 }  // namespace
@@ -49,11 +51,10 @@ base::Result<ProjectFile> read_project_file(const std::string& path) {
 }
 
 base::Result<ProjectFile> parse_project_file(const std::string& path, std::string text) {
-  TomlHeaders headers;
-  base::Result<TomlTable> table = parse_toml(path, text, &headers);
+  base::Result<TomlTable> table = parse_toml(path, text);
   if (!table.ok()) return table.error();
   if (base::Status texts = check_texts(path, *table); !texts.ok()) return texts.error();
-  return ProjectFile{path, std::move(text), std::move(*table), std::move(headers)};
+  return ProjectFile{path, std::move(text), std::move(*table)};
 }
 
 std::string nearest_project_file(const std::string& path) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,7 +36,6 @@ struct ProjectFile {
   std::string path;
   std::string text;
   TomlTable table;
-  TomlHeaders headers;
 
   const TomlValue* find(std::string_view key) const;
   // Takes the value of `key` over into `out`, when there is one of the kind T.
@@ -52,6 +52,8 @@ struct ProjectFile {
 base::Result<ProjectFile> read_project_file(const std::string& path);
 // The same of a file that was read already.
 base::Result<ProjectFile> parse_project_file(const std::string& path, std::string text);
+// Its tables, also those without keys: "slack.", "devices.press.".
+std::vector<std::pair<std::string, TomlPlace>> project_tables(const ProjectFile& file);
 // Refuses unknown keys and wrong values; tables [devices.NAME] and [units] are not looked into.
 base::Status check_project_keys(const ProjectFile& file);
 // Reads the file and checks its keys.

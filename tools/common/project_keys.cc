@@ -162,14 +162,32 @@ std::string warning_code_fault(std::string_view code) {
   return base::joined({"`", code, "` is an error; only warnings and notes have a level"});
 }
 
+// The file is TOML: nothing else of it begins a line with a bracket.
+std::vector<std::pair<std::string, TomlPlace>> project_tables(const ProjectFile& file) {
+  std::vector<std::pair<std::string, TomlPlace>> tables;
+  const std::string& text = file.text;
+  uint32_t line = 1;
+  for (size_t begin = 0; begin < text.size(); ++line) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const size_t bracket = text.find_first_not_of(" \t\xef\xbb\xbf", begin);
+    if (bracket < end && text[bracket] == '[') {
+      const size_t name = text.find_first_not_of('[', bracket);
+      const size_t size = text.find(']', name) - name;
+      const auto column = static_cast<uint32_t>(name - begin) + 1;
+      tables.emplace_back(text.substr(name, size) + ".", TomlPlace{line, column});
+    }
+    begin = end + 1;
+  }
+  return tables;
+}
+
 base::Status check_project_keys(const ProjectFile& file) {
   for (const auto& [name, value] : file.table) {
     if (name.starts_with(kDeviceTables) || name.starts_with(kUnitTable)) continue;
     if (base::Status known = check_key(file.path, name, value); !known.ok()) return known;
   }
-  for (const auto& [prefix, header] : file.headers) {
-    if (base::Status known = check_header(file.path, prefix, header.place); !known.ok())
-      return known;
+  for (const auto& [prefix, place] : project_tables(file)) {
+    if (base::Status known = check_header(file.path, prefix, place); !known.ok()) return known;
   }
   return base::Ok{};
 }

@@ -21,20 +21,18 @@ class Parser {
  public:
   Parser(std::string_view file, std::string_view text) : file_(file), text_(text) {}
 
-  base::Result<TomlTable> run(TomlHeaders* headers) {
+  base::Result<TomlTable> run() {
     if (text_.starts_with("\xef\xbb\xbf")) at_ = line_start_ = 3;  // as editors of Windows begin
     while (at_ < text_.size() && !failed_) line();
     if (failed_) return error_;
-    if (headers != nullptr) *headers = std::move(headers_);
     return std::move(table_);
   }
 
  private:
   char peek() const { return at_ < text_.size() ? text_[at_] : '\n'; }
   uint32_t column() const { return static_cast<uint32_t>(at_ - line_start_) + 1; }
-  void fail(std::string what) { fail_at({line_, column()}, std::move(what)); }
-  void fail_at(TomlPlace place, std::string what) {
-    if (!failed_) error_ = toml_error(file_, place.line, place.column, std::move(what));
+  void fail(std::string what) {
+    if (!failed_) error_ = toml_error(file_, line_, column(), std::move(what));
     failed_ = true;
   }
   void blanks() {
@@ -74,7 +72,7 @@ class Parser {
       ++at_;
       const bool one_of_many = peek() == '[';
       if (one_of_many) ++at_;
-      const TomlPlace place{line_, column()};
+      const size_t begin = at_;
       prefix_ = key() + ".";
       while (!failed_ && peek() == '.') {
         ++at_;
@@ -83,11 +81,12 @@ class Parser {
       if (!failed_ && peek() != ']') fail("expected `]` after the table's name");
       ++at_;
       if (one_of_many) {
-        prefix_ += std::to_string(++headers_[prefix_].count) + ".";
+        prefix_ += std::to_string(++of_many_[prefix_]) + ".";
         if (!failed_ && peek() != ']') fail("expected `]]` after the table's name");
         ++at_;
-      } else if (!headers_.emplace(prefix_, TomlHeader{0, place}).second) {
-        fail_at(place, "table `" + prefix_.substr(0, prefix_.size() - 1) + "` is given twice");
+      } else if (!of_many_.emplace(prefix_, 0).second) {
+        at_ = begin;
+        fail("table `" + prefix_.substr(0, prefix_.size() - 1) + "` is given twice");
       }
     } else if (is_key_char(peek())) {
       entry();
@@ -106,17 +105,20 @@ class Parser {
     TomlValue value;
     value.line = line_;
     value.column = column();
-    std::string name = prefix_ + key();
+    const size_t begin = at_;
+    const size_t line_start = line_start_;
+    const std::string name = prefix_ + key();
     blanks();
     if (peek() != '=') return fail("expected `=` after `" + name + "`");
     ++at_;
     blanks();
     parse_value(value);
-    if (failed_) return;
-    const TomlPlace place{value.line, value.column};
-    if (!table_.emplace(name, std::move(value)).second) {
-      fail_at(place, "`" + name + "` is given twice");
-    }
+    const uint32_t line = value.line;
+    if (failed_ || table_.emplace(name, std::move(value)).second) return;
+    at_ = begin;
+    line_start_ = line_start;
+    line_ = line;
+    fail("`" + name + "` is given twice");
   }
 
   void parse_value(TomlValue& value) {
@@ -133,7 +135,7 @@ class Parser {
       at_ += 5;
       value.data = false;
     } else if ((c >= '0' && c <= '9') || c == '-') {
-      value.data = integer(value.place);
+      value.data = integer();
     } else {
       fail("expected a value: \"text\", a number, true, false or [\"a\", \"b\"]");
     }
@@ -179,7 +181,8 @@ class Parser {
     return out;
   }
 
-  int64_t integer(TomlPlace place) {
+  int64_t integer() {
+    const size_t begin = at_;
     std::string digits;
     for (; is_key_char(peek()); ++at_) {
       if (peek() != '_') digits += peek();
@@ -187,7 +190,8 @@ class Parser {
     int64_t value = 0;
     auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (code != std::errc() || end != digits.data() + digits.size()) {
-      fail_at(place, "not a whole number; write it in decimal digits");
+      at_ = begin;
+      fail("not a whole number in decimal digits");
     }
     return value;
   }
@@ -221,8 +225,8 @@ class Parser {
   size_t line_start_ = 0;
   uint32_t line_ = 1;
   std::string prefix_;
+  std::map<std::string, size_t> of_many_;  // tables that each [[name]] has had; 0: of [name]
   TomlTable table_;
-  TomlHeaders headers_;
   bool failed_ = false;
   base::Error error_{base::Refusal::kBadProject, {}};
 };
@@ -247,9 +251,8 @@ base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, st
           base::joined({file, ":", std::to_string(line), ":", std::to_string(column), ": ", what})};
 }
 
-base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text,
-                                   TomlHeaders* headers) {
-  return Parser(file, text).run(headers);
+base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text) {
+  return Parser(file, text).run();
 }
 
 }  // namespace tools

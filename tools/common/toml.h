@@ -33,16 +33,8 @@ struct TomlValue {
 // error.
 using TomlTable = std::map<std::string, TomlValue>;
 
-// Its tables, also those without keys: "slack.", "devices.press.".
-struct TomlHeader {
-  size_t count = 0;  // of [[name]]; 0: of [name]
-  TomlPlace place{};
-};
-using TomlHeaders = std::map<std::string, TomlHeader>;
-
 // `file` is named in errors: "stc.toml:3:7: ...".
-base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text,
-                                   TomlHeaders* headers = nullptr);
+base::Result<TomlTable> parse_toml(std::string_view file, std::string_view text);
 // A text in quotes, for the other direction. Blanks take the place of what cannot stand there.
 std::string toml_quoted(std::string_view text);
 base::Error toml_error(std::string_view file, uint32_t line, uint32_t column, std::string what);

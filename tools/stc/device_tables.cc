@@ -4,6 +4,7 @@
 #include <charconv>
 #include <optional>
 
+#include "base/nearest_name.h"
 #include "ir/types/address_text.h"
 #include "tools/stc/map_entry.h"
 
@@ -75,14 +76,14 @@ class Reader {
  private:
   // Those without keys, too.
   base::Status check_tables() const {
-    for (const auto& [table, header] : settings_file_.headers) {
+    for (const auto& [table, place] : tools::project_tables(settings_file_)) {
       const size_t begin = tools::kDeviceTables.size();
       if (!table.starts_with(tools::kDeviceTables) || table.size() == begin) continue;
       const std::string name = table.substr(begin, table.size() - begin - 1);
       const bool has_keys =
           std::any_of(devices_.begin(), devices_.end(),
                       [&](const ir::Device& device) { return device.name == name; });
-      if (!has_keys) return at(file_, header.place, "device `" + name + "` has no `driver`");
+      if (!has_keys) return at(file_, place, "device `" + name + "` has no `driver`");
     }
     return base::Ok{};
   }
@@ -108,12 +109,14 @@ class Reader {
       return base::Ok{};
     }
     std::string known;
+    base::NearestName nearest(name == nullptr ? "" : *name);
     for (const ir::DriverRow& row : ir::driver_rows()) {
+      nearest.offer(row.name);
       known += (known.empty() ? "\"" : ", \"") + std::string(row.name) + "\"";
     }
     return at(file_, value.place,
               (name == nullptr ? "the driver" : "unknown driver \"" + *name + "\"; it") +
-                  " must be one of " + known);
+                  " must be one of " + known + nearest.question());
   }
 
   base::Status add_map(const tools::TomlValue& value) {
@@ -180,8 +183,7 @@ class Reader {
         const tools::TomlValue& value = *settings_[next++].value;
         const ir::SettingRow* row = ir::find_setting(*driver, setting.key);
         if (row == nullptr) {
-          return at(file_, {value.line, value.column},
-                    "unknown key `" + setting.key + "`; " + known_keys(*driver));
+          return at(file_, {value.line, value.column}, unknown_key(*driver, setting.key));
         }
         const std::string bad = ir::bad_value(*row, setting.value);
         if (!bad.empty()) return at(file_, value.place, "`" + setting.key + "` " + bad);
@@ -198,12 +200,21 @@ class Reader {
     return base::Ok{};
   }
 
-  static std::string known_keys(const ir::DriverRow& driver) {
-    std::string known = "driver \"" + std::string(driver.name) + "\" knows map, quality, resource";
+  static std::string unknown_key(const ir::DriverRow& driver, const std::string& given) {
+    base::NearestName nearest(given);
+    std::string known = "driver \"" + std::string(driver.name) + "\" knows ";
+    std::string_view longer;  // `period` is short for `period_ms`
+    for (const char* key : {"map", "quality", "resource", "driver"}) nearest.offer(key);
+    known += "map, quality, resource";
     for (const ir::SettingRow& row : ir::setting_rows()) {
-      if ((row.families & driver.family) != 0) known += ", " + std::string(row.key);
+      if ((row.families & driver.family) == 0) continue;
+      nearest.offer(row.key);
+      if (row.key.starts_with(given)) longer = row.key;
+      known += ", " + std::string(row.key);
     }
-    return known;
+    const std::string meant =
+        longer.empty() ? nearest.question() : "; did you mean `" + std::string(longer) + "`?";
+    return "unknown key `" + given + "`; " + known + meant;
   }
 
   // What only shows when all is read, in the order of the file's devices.

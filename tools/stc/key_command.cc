@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/nearest_name.h"
 #include "ir/bytecode/image.h"
 #include "online_change/package/fleet_file.h"
 #include "online_change/package/package.h"
@@ -233,6 +234,15 @@ base::Status verify(const tools::Options& options) {
 
 base::Status carry_out(const tools::Options& options) {
   const std::string& verb = options.arguments()[0];
+  base::NearestName nearest(verb);
+  bool known = false;
+  for (const char* one : {"new", "sign", "verify", "revoke"}) {
+    nearest.offer(one);
+    known = known || verb == one;
+  }
+  if (!known) {
+    return usage("`" + verb + "` is none of new, sign, verify, revoke" + nearest.question());
+  }
   const bool many = verb == "revoke";
   if (!many && options.arguments().size() != 2) return usage("`" + verb + "` takes one argument");
   base::Status complete = base::Ok{};
@@ -243,8 +253,7 @@ base::Status carry_out(const tools::Options& options) {
   if (verb == "new") return make_new(options);
   if (verb == "sign") return sign(options);
   if (verb == "verify") return verify(options);
-  if (many) return revoke(options);
-  return usage("`" + verb + "` is none of new, sign, verify, revoke");
+  return revoke(options);
 }
 
 #else

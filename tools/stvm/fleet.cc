@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "base/nearest_name.h"
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
 #include "tools/stvm/fleet_agents.h"
@@ -127,16 +128,24 @@ base::Status read_options(const tools::Options& options, FleetRun& run) {
   return base::Ok{};
 }
 
+base::Error no_such_verb(const std::string& given) {
+  base::NearestName nearest(given);
+  std::string all;
+  for (const char* verb : {"change", "status", "diff", "undo", "accept", "continue", "roll",
+                           "resume", "abort", "watch"}) {
+    nearest.offer(verb);
+    all += (all.empty() ? "" : ", ") + std::string(verb);
+  }
+  return fleet_usage("`" + given + "` is none of its verbs: " + all + nearest.question());
+}
+
 base::Result<FleetRun> read_run(const tools::Options& options, ConnectBroker connect) {
   FleetRun run;
   run.verb = options.arguments()[0];
   const size_t more = options.arguments().size() - 1;
   const bool known =
       changes(run.verb) || run.verb == "status" || run.verb == "continue" || run.verb == "diff";
-  if (!known)
-    return fleet_usage("`" + run.verb +
-                       "` is none of its verbs: change, status, diff, undo, "
-                       "accept, continue, roll, resume, abort, watch");
+  if (!known) return no_such_verb(run.verb);
   if (run.verb == "diff") {
     if (base::Status read = read_options(options, run); !read.ok()) return read.error();
     return run;
@@ -245,14 +254,14 @@ int show_status(FleetRun& run) {
 
 }  // namespace
 
-FleetAccess fleet_access(uint32_t patience_s, const std::string& file,
-                         const PackageOptions& made) {
+FleetAccess fleet_access(uint32_t patience_s, const std::string& file, const PackageOptions& made) {
   FleetAccess access;
   access.connect = [patience_s](const FleetMember& member) -> base::Result<ControllerClient> {
     if (is_at_agent(member)) {
       return base::Error{base::Refusal::kUsage,
-                         member.name + " is reached over a broker only: change, undo, accept, "
-                                       "status, continue and roll-outs go there"};
+                         member.name +
+                             " is reached over a broker only: change, undo, accept, "
+                             "status, continue and roll-outs go there"};
     }
     return is_at_folder(member) ? ControllerClient::connect_here(member.place, patience_s)
                                 : ControllerClient::connect_there(member.place, {}, patience_s);

@@ -91,8 +91,10 @@ base::Result<Names> matching(const ir::Image& image, const Names& names) {
 base::Error no_such_task(const ir::Image& image, std::string_view name) {
   base::NearestName nearest(name);
   for (const ir::ImageTask& task : image.tasks) nearest.offer(task.name);
+  const std::string& best = nearest.best();
+  const char* const meant = best.empty() ? "" : "; did you mean `";
   return {base::Refusal::kNoSuchTask,
-          base::joined({"there is no task `", name, "`", nearest.question()})};
+          base::joined({"there is no task `", name, "`", meant, best, best.empty() ? "" : "`?"})};
 }
 
 base::Result<Assignments> matching(ControllerClient& client, const Assignments& rows) {

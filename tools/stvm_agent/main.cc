@@ -1,4 +1,5 @@
-// stvm-agent: what `stvm agent` hands over to. Its command line is stvm's, and it calls itself so.
+// stvm-agent: what `stvm agent` hands over to. Its command line is stvm's, and it calls itself so;
+// `--version` is of this program.
 #include "adapters/mqtt/of_build.h"
 #include "tools/common/refusal_text.h"
 #include "tools/stvm/agent_command.h"
@@ -8,8 +9,10 @@ int main(int argc, char** argv) {
                              return stvm::run_agent(options, mqtt::connect_in_this_build);
                            }};
   const tools::Entry* const entries[] = {&agent};
-  const tools::Tool tool{"stvm",  "Connects a controller to a broker, for `stvm agent`.",
-                         entries, {},
-                         {},      {{"json", tools::refusal_json}}};
+  const tools::Tool tool{
+      "stvm",      "Connects a controller to a broker, for `stvm agent`.",
+      entries,     {{"adapters", tools::VersionFact::kTexts, mqtt::adapters_of_this_build()}},
+      {},          {{"json", tools::refusal_json}},
+      "stvm-agent"};
   return tools::dispatch(tool, argc, argv);
 }
