@@ -69,6 +69,17 @@ void Diagnostics::add(DiagnosticCode code, SourceSpan span, std::string text, st
   add(Diagnostic{code, span, std::move(text), std::move(fix), {}});
 }
 
+std::string Diagnostics::left_out() const {
+  std::string out;
+  const char* const names[] = {"errors", "warnings", "notes"};
+  for (size_t i = 0; i < 3; ++i) {
+    if (counts_[i] <= limit_) continue;
+    out += (out.empty() ? "of " : ", of ") + std::to_string(counts_[i]) + ' ' + names[i] + ' ' +
+           std::to_string(limit_) + " are listed";
+  }
+  return out;
+}
+
 void Diagnostics::sort() {
   std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return sort_key(a) < sort_key(b);

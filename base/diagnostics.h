@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/source.h"
+#include "base/tool_limits.h"
 
 namespace base {
 
@@ -53,7 +54,7 @@ class WarningPolicy;
 // counted but not kept, so hostile input cannot exhaust memory.
 class Diagnostics {
  public:
-  explicit Diagnostics(uint32_t limit = 200) : limit_(limit) {}
+  explicit Diagnostics(uint32_t limit = kMostListedMessages) : limit_(limit) {}
   // Warnings are what the policy makes of them; it must outlive the messages' collection.
   explicit Diagnostics(const WarningPolicy& policy) : policy_(&policy) {}
   void add(Diagnostic diagnostic);
@@ -65,12 +66,14 @@ class Diagnostics {
   uint32_t warning_count() const { return counts_[1]; }
   uint32_t note_count() const { return counts_[2]; }
   const std::vector<Diagnostic>& all() const { return all_; }
+  // "of 300 warnings 200 are listed"; "": everything was kept.
+  std::string left_out() const;
   // By file and position, each (code, position) once. Call before rendering.
   void sort();
 
  private:
   std::vector<Diagnostic> all_;
-  uint32_t limit_ = 200;
+  uint32_t limit_ = kMostListedMessages;
   const WarningPolicy* policy_ = nullptr;
   uint32_t hard_errors_ = 0;
   uint32_t counts_[3] = {};  // by Severity

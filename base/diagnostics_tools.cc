@@ -86,6 +86,12 @@ class SarifWriter {
       out += "\"originalUriBaseIds\":{\"SRCROOT\":{\"uri\":" +
              json_string(uri(std::string(run_.root) + "/")) + "}},";
     }
+    if (const std::string rest = diagnostics.left_out(); !rest.empty()) {
+      out +=
+          "\"invocations\":[{\"executionSuccessful\":true,\"toolExecutionNotifications\":[{"
+          "\"level\":\"warning\"," +
+          sarif_message(rest) + "}]}],";
+    }
     out += "\"columnKind\":\"unicodeCodePoints\",\"results\":[";
     const char* separator = "\n";
     for (const Diagnostic& diagnostic : diagnostics.all()) {
@@ -259,6 +265,9 @@ std::string render_github(const Diagnostics& diagnostics, const SourceMap& sourc
     out += github_line(row.code, severity_name(diagnostic.severity),
                        region_of(sources, diagnostic.span),
                        with_help(diagnostic.text, diagnostic.fix));
+  }
+  if (const std::string rest = diagnostics.left_out(); !rest.empty()) {
+    out += github_line("stc", "warning", {}, rest);
   }
   if (run.refused == nullptr) return out;
   return out + github_line(run.refused->code, "error", run.refused->region,

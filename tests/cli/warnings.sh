@@ -162,4 +162,28 @@ said 'help: convert an operand: \(TO_DINT\(a\) \+ b\) / c; where .* TO_INT\(\(TO
 printf 'PROGRAM p VAR w : INT; END_VAR w := TO_INT((TO_DINT(w) + 1) MOD 4); END_PROGRAM\n' >cut.st
 expect 0 stc check --dialect iec cut.st
 grep -q W0084 out err && fail 'the help is warned of'
+
+# So many are listed, and each form says that there are more; the limit is in the table of limits.
+{
+  echo 'PROGRAM Main VAR a : INT; l : DINT; END_VAR'
+  for _ in $(seq 205); do echo '  a := l;'; done
+  echo 'END_PROGRAM'
+} >many.st
+expect 0 stc check many.st
+said '^0 errors, 205 warnings, 1 note \(201 shown\)$'
+expect 0 stc check many.st --format json
+json 'len([e for e in d["diagnostics"] if e["severity"] == "warning"]) == 200 and d["warnings"] == 205'
+expect 0 stc check many.st --format sarif
+json 'len(d["runs"][0]["results"]) >= 200'
+json 'd["runs"][0]["invocations"][0]["executionSuccessful"]'
+json '"warnings 200 are listed" in d["runs"][0]["invocations"][0]["toolExecutionNotifications"][0]["message"]["text"]'
+expect 0 stc check many.st --format github
+said '^::warning title=stc::of 205 warnings 200 are listed$'
+sed "s/a := l/a := 'text'/" many.st >many_errors.st
+expect 1 stc check many_errors.st --format github
+said '^::warning title=stc::of 205 errors 200 are listed$'
+expect 0 stc check cut.st --format sarif
+json '"invocations" not in d["runs"][0]'
+expect 0 stc explain limits
+said '^ *200  errors of one run that are listed, .* kMostListedMessages$'
 exit 0
