@@ -16,7 +16,7 @@ namespace {
 constexpr uint64_t kPictureWidth = 1200;  // a screen, or paper across
 
 constexpr tools::OptionRow kDrawOptions[] = {
-    STC_SOURCE_OPTIONS,
+    TOOLS_COMPILE_OPTIONS,
     {"--output|-o", "FILE|DIR", "FILE.svg for one picture, or a folder for all (default: stdout)"},
     {"--live", "HOST|DIR", "colour what is powered and active there now, and show values"},
     {"--values", "FILE", "the same with values from a file, NAME=VALUE a line"},

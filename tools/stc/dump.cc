@@ -23,7 +23,7 @@ namespace stc {
 namespace {
 
 constexpr tools::OptionRow kDumpOptions[] = {
-    STC_SOURCE_OPTIONS,
+    TOOLS_COMPILE_OPTIONS,
     STC_CODE_OPTIONS,
     {"--tokens", nullptr, "tokens of the sources"},
     {"--tree", nullptr, "syntax tree"},

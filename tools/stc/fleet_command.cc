@@ -15,7 +15,8 @@ namespace stc {
 namespace {
 
 constexpr tools::OptionRow kFleetOptions[] = {
-    STC_SOURCE_OPTIONS,
+    TOOLS_COMPILE_OPTIONS,
+    tools::kFormatOption,
     STC_CODE_OPTIONS,
     {"--output|-o", "FILE", "the file to write (required)"},
     {"--author", "NAME", "who made the edit"},

@@ -1,9 +1,11 @@
 // stc package: a running image and a new version -> change package.
 #include <unistd.h>
 
+#include "base/sha256.h"
 #include "online_change/package/package.h"
 #include "online_change/plan/pou_edits.h"
 #include "tools/common/files.h"
+#include "tools/common/json.h"
 #include "tools/stc/commands.h"
 #include "tools/stc/edit_version.h"
 #include "tools/stc/session.h"
@@ -13,7 +15,8 @@ namespace stc {
 namespace {
 
 constexpr tools::OptionRow kPackageOptions[] = {
-    STC_SOURCE_OPTIONS,
+    TOOLS_COMPILE_OPTIONS,
+    tools::kFormatOption,
     STC_CODE_OPTIONS,
     STC_EMBED_OPTION,
     {"--base", "IMAGE", "the running version (required)"},
@@ -22,13 +25,20 @@ constexpr tools::OptionRow kPackageOptions[] = {
     tools::kMatchingOption,
     {"--step", "N", "of a fleet file that starts each unit by itself: the N-th of its steps"},
     {"--move-all", nullptr, "give every instance a new place (a test of changes)"},
-    {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`"},
+    {"--watch", nullptr, "stay, and make one at each save, for `stvm change --watch`", "",
+     "--format"},
 };
 constexpr tools::Command kPackageCommand{
     "package", "NEW...", "Makes the change package from a running version to a new one.",
     kPackageOptions, 1};
 
-base::Status make(const tools::Options& options) {
+struct Made {
+  base::Digest base{};
+  base::Digest next{};
+  base::Bytes bytes;
+};
+
+base::Result<Made> make(const tools::Options& options) {
   if (!options.has("--base") || !options.has("--output")) {
     return base::Error{base::Refusal::kUsage, "package: --base and --output are required"};
   }
@@ -59,7 +69,21 @@ base::Status make(const tools::Options& options) {
   }
   auto package = online_change::make_package(old_version->bytes, next->bytes);
   if (!package.ok()) return package.error();
-  return tools::write_file(options.text("--output"), online_change::encode(*package));
+  Made made{ir::digest(old_version->bytes), ir::digest(next->bytes),
+            online_change::encode(*package)};
+  base::Status written = tools::write_file(options.text("--output"), made.bytes);
+  if (!written.ok()) return written.error();
+  return made;
+}
+
+std::string json_of(const std::string& file, const Made& made) {
+  tools::JsonWriter json;
+  json.begin_object().field("file", file);
+  json.field("digest", base::to_hex(base::sha256(made.bytes)));
+  json.field("bytes", uint64_t{made.bytes.size()});
+  json.field("base", base::to_hex(made.base)).field("next", base::to_hex(made.next));
+  json.end_object();
+  return json.finish();
 }
 
 int follow(const tools::Options& options) {
@@ -77,8 +101,12 @@ int follow(const tools::Options& options) {
 
 int run_package(const tools::Options& options) {
   if (options.has("--watch")) return follow(options);
-  base::Status made = make(options);
-  return made.ok() ? tools::kOk : tools::refuse("stc", made.error());
+  base::Result<Made> made = make(options);
+  if (!made.ok()) return tools::refuse("stc", made.error());
+  if (options.text("--format") == "json") {
+    std::fputs(json_of(options.text("--output"), *made).c_str(), stdout);
+  }
+  return tools::kOk;
 }
 
 }  // namespace
