@@ -270,6 +270,9 @@ said '^marked/stc.toml:2:1: error\[R0506\]: unknown key `nmae`'
 printf '\357\273\277nmae = "y"\n' >marked/stc.toml
 expect 7 stc check marked
 said '^marked/stc.toml:1:1: error\[R0506\]: unknown key `nmae`'
+printf '\357\273\277[slak]\n' >marked/stc.toml
+expect 7 stc check marked
+said '^marked/stc.toml:1:2: error\[R0506\]: unknown table `slak`'
 printf '\357\273\277sources = ["a.st"]\n[warnings]\nW0003 = "off"\n' >marked/stc.toml
 expect 0 stc check marked
 printf '\n[warnings] # again\nW0013 = "off"\n' >>marked/stc.toml

@@ -83,10 +83,11 @@ void read_settings(const tools::ProjectFile& file) {
 }
 
 void read_project(std::string_view text, const tools::TomlTable& table) {
-  if (const auto devices = stc::read_devices(kName, table); !devices.ok()) {
+  const tools::ProjectFile as_it_is{kName, std::string(text), table};
+  if (const auto devices = stc::read_devices(as_it_is); !devices.ok()) {
     check_error(devices.error());
   }
-  const auto units = stc::parse_unit_settings({kName, std::string(text), table});
+  const auto units = stc::parse_unit_settings(as_it_is);
   if (!units.ok()) check_error(units.error());
   const auto file = tools::parse_project_file(kName, std::string(text));
   if (!file.ok()) return check_error(file.error());

@@ -167,9 +167,10 @@ std::vector<std::pair<std::string, TomlPlace>> project_tables(const ProjectFile&
   std::vector<std::pair<std::string, TomlPlace>> tables;
   const std::string& text = file.text;
   uint32_t line = 1;
-  for (size_t begin = 0; begin < text.size(); ++line) {
+  const size_t mark = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // as in parse_toml()
+  for (size_t begin = mark; begin < text.size(); ++line) {
     const size_t end = std::min(text.find('\n', begin), text.size());
-    const size_t bracket = text.find_first_not_of(" \t\xef\xbb\xbf", begin);
+    const size_t bracket = text.find_first_not_of(" \t", begin);
     if (bracket < end && text[bracket] == '[') {
       const size_t name = text.find_first_not_of('[', bracket);
       const size_t size = text.find(']', name) - name;
