@@ -48,10 +48,6 @@ void Builder::start(BlockId block) {
   order_.push_back(block);
 }
 
-bool Builder::started(BlockId block) const {
-  return std::find(order_.begin(), order_.end(), block) != order_.end();
-}
-
 ValueId Builder::new_value(Scalar scalar) {
   pou_.values.push_back({scalar});
   return ValueId(static_cast<uint32_t>(pou_.values.size() - 1));

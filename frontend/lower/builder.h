@@ -19,13 +19,11 @@ class Builder {
 
   ir::BlockId new_block();
   void start(ir::BlockId block);
-  bool started(ir::BlockId block) const;
   ir::ValueId add_param(ir::BlockId block, ir::Scalar scalar);
   // False after a terminator.
   bool reachable() const { return current_.valid(); }
   // Blocks in the order in which they were started; what was written is in those that have ended.
   std::span<const ir::BlockId> blocks() const { return order_; }
-  const ir::Pou& pou() const { return pou_; }
 
   ir::ValueId constant(ir::Scalar scalar, uint64_t bits);
   ir::ValueId load(const ir::Place& place, ir::Scalar scalar);

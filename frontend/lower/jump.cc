@@ -1,5 +1,7 @@
 // JMP and labels. A label is reached from its own statement list and from everything
 // inside; nothing jumps into a block.
+#include <algorithm>
+
 #include "frontend/lower/statements.h"
 #include "frontend/lower/try_code.h"
 #include "frontend/sema/declarations/variables.h"
@@ -36,7 +38,8 @@ Flow::Labels Statements::labels_of(Range32 list) {
 
 void Statements::label(const Stmt& stmt) {
   ir::BlockId block = body_.flow.labels.back().labels.find(tree_.name(stmt.name).text)->second;
-  if (build_.started(block)) return;  // the name stands twice
+  const std::span<const ir::BlockId> started = build_.blocks();
+  if (std::find(started.begin(), started.end(), block) != started.end()) return;  // stands twice
   if (build_.reachable()) build_.jump(block);
   build_.start(block);
 }

@@ -154,7 +154,7 @@ void Statements::check_rounds(ExprId condition, size_t first, size_t test, size_
   const Note& note = infer(condition);
   if (note.constant || !note.type.valid()) return;
   const std::span<const ir::BlockId> blocks = build_.blocks();
-  if (!is_same_each_round(build_.pou(), blocks.subspan(test, tests), blocks.subspan(first))) return;
+  if (!is_same_each_round(body_.out, blocks.subspan(test, tests), blocks.subspan(first))) return;
   warning(DiagnosticCode::kEndlessLoop, tree_[condition].span,
           "once this loop goes on it never ends: nothing in it changes its condition",
           "let the condition depend on what the loop changes; inputs change between scans only");

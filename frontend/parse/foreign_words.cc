@@ -1,5 +1,6 @@
 #include "frontend/parse/foreign_words.h"
 
+#include "frontend/parse/token_sets.h"
 #include "ir/types/types.h"
 
 namespace frontend {
@@ -33,6 +34,12 @@ std::string instead_of(std::string_view word) {
     if (ir::same_name(word, row.word)) return std::string(row.instead);
   }
   return {};
+}
+
+std::string statement_fix(std::string_view word, std::string_view behind) {
+  if (behind.empty() || !is_elementary_name(word)) return instead_of(word);
+  return "declare variables in front of the statements: `VAR " + std::string(behind) + " : " +
+         std::string(word) + "; END_VAR`";
 }
 
 }  // namespace frontend

@@ -3,6 +3,23 @@
 #include "frontend/parse/token_sets.h"
 
 namespace frontend {
+namespace {
+
+bool begins_type(TokenKind kind, std::string_view text, TokenKind next) {
+  switch (kind) {
+    case TokenKind::kArray:
+    case TokenKind::kPointer:
+    case TokenKind::kReference:
+    case TokenKind::kRefTo:
+    case TokenKind::kStringType:
+    case TokenKind::kWideStringType:
+      return true;
+    default:
+      return is_elementary_name(text) && next != TokenKind::kLeftParen;  // TIME() is a call
+  }
+}
+
+}  // namespace
 
 // Statements that begin with words which are names elsewhere; false when it is none of them.
 bool Parser::parse_soft_statement() {
@@ -15,7 +32,7 @@ bool Parser::parse_soft_statement() {
   if (kind() == TokenKind::kTry) {
     parse_try();
   } else if (next_kind() == TokenKind::kColon) {
-    at_misplaced_declaration() ? reject_declaration() : parse_label();
+    parse_label();
   } else if (kind() == TokenKind::kJump && is_name(next_kind())) {
     parse_jump_to_label();
   } else if ((kind() == TokenKind::kMock || kind() == TokenKind::kMockFunction) &&
@@ -35,37 +52,19 @@ void Parser::reject_label() {
   panic_ = false;
 }
 
-// `a : INT;` among statements: a type stands behind the colon, in its row.
-bool Parser::at_misplaced_declaration() const {
-  const Token& colon = current_[1];
-  const Token& type = current_[2];
-  const uint32_t from = colon.begin + 1;
-  if (text_.substr(from - base_, type.begin - from).find('\n') != std::string_view::npos)
-    return false;
-  switch (type.kind) {
-    case TokenKind::kArray:
-    case TokenKind::kPointer:
-    case TokenKind::kReference:
-    case TokenKind::kRefTo:
-    case TokenKind::kStringType:
-    case TokenKind::kWideStringType:
-      return true;
-    default:
-      // TIME() is a call.
-      return is_elementary_name(text(type)) && current_[3].kind != TokenKind::kLeftParen;
-  }
-}
-
-void Parser::reject_declaration() {
-  const std::string name(text(*current_));
-  report(Code::kExpectedStatement, {{current_->begin}, {current_[2].begin + current_[2].length}},
-         "variables are declared in front of the statements",
-         "write it between VAR and END_VAR: `VAR " + name + " : " + std::string(text(current_[2])) +
-             " ... END_VAR`");
-  skip_to_statement_end();
-}
-
+// `a : INT;` among statements is a declaration: a type stands behind the colon, in its row.
 void Parser::parse_label() {
+  const Token& type = current_[2];
+  const uint32_t from = current_[1].begin + 1;
+  const bool same_row = text_.substr(from - base_, type.begin - from).find('\n') == text_.npos;
+  if (same_row &&
+      begins_type(type.kind, text(type), current_[type.kind == TokenKind::kEnd ? 2 : 3].kind)) {
+    report(Code::kExpectedStatement, {{current_->begin}, {type.begin + type.length}},
+           "variables are declared in front of the statements",
+           "write it between VAR and END_VAR: `VAR " + std::string(text(*current_)) + " : " +
+               std::string(text(type)) + " ... END_VAR`");
+    return skip_to_statement_end();
+  }
   Stmt stmt;
   stmt.kind = StmtKind::kLabel;
   stmt.span = current_->span();

@@ -119,9 +119,6 @@ class Parser {
   ExprId parse_type_argument();
   bool at_type_argument() const;
   std::string step_fix() const;
-  std::string statement_fix(const Token& word) const;
-  bool at_misplaced_declaration() const;
-  void reject_declaration();
   ExprId parse_operator_call();
   ExprId error_expression();
   ExprId add_expression(const Expr& expr);

@@ -150,7 +150,7 @@ void Parser::finish_simple(ExprId left, base::SourcePos begin) {
       report_here(
           Code::kExpected,
           "expected `:=` or `(` after " + describe(current_[-1]) + ", found " + describe(*current_),
-          statement_fix(current_[-1]));
+          statement_fix(text(current_[-1]), is_name(kind()) ? text(*current_) : ""));
     }
     Stmt stmt;
     stmt.kind = StmtKind::kError;
@@ -158,14 +158,6 @@ void Parser::finish_simple(ExprId left, base::SourcePos begin) {
     add_statement(stmt);
   }
   finish_statement("statement");
-}
-
-// The way out where a statement goes on behind `word` with a name.
-std::string Parser::statement_fix(const Token& word) const {
-  const std::string name(text(word));
-  if (!is_elementary_name(name) || !is_name(kind())) return instead_of(name);
-  const std::string declared = std::string(text(*current_)) + " : " + name + ";";
-  return "declare variables in front of the statements: `VAR " + declared + " END_VAR`";
 }
 
 void Parser::parse_jump(StmtKind statement) {
