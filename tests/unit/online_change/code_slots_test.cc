@@ -5,6 +5,7 @@
 #include <map>
 
 #include "tests/unit/online_change/plant.h"
+#include "tests/unit/sanitized.h"
 
 namespace online_change {
 namespace {
@@ -317,7 +318,7 @@ TEST(CodeSlots, D5_case49_ten_thousand_edits_take_no_more_room) {
   Plant plant(versions[0]);
   std::map<base::Digest, base::Bytes> packages;
   uint64_t units = 0;
-  for (int round = 1; round <= 10'000; ++round) {
+  for (int round = 1; round <= static_cast<int>(10'000 / kOneOf); ++round) {
     base::Bytes& package = packages[plant.controller().verified().digest()];
     if (package.empty()) package = plant.package(versions[round % 2]);
     ASSERT_TRUE(plant.stage(package).ok());
