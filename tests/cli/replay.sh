@@ -49,6 +49,15 @@ expect 0 stvm replay plc.rec --print M.k,M.added
 said 'the state is identical'
 said 'M.added=[0-9]'
 
+# Started anew, it keeps the recording before: what led to its end is not lost.
+cp plc.rec first.rec
+serve plc --record plc.rec
+cmp -s plc.rec.before first.rec || fail "the recording before is gone"
+expect 0 stvm stop --dir plc
+wait "$(cat plc.pid)" || fail "exit code $? of the controller"
+expect 0 stvm replay plc.rec
+cp first.rec plc.rec
+
 # What is damaged is said, and what is whole before it is replayed.
 head -c $(($(wc -c <plc.rec) * 3 / 4)) plc.rec >cut.rec
 expect 0 stvm replay cut.rec

@@ -8,6 +8,9 @@
 
 namespace stvm {
 
+// A recording that is there becomes FILE.before: a controller that died and was started anew has
+// not lost what led to it. Not for a halted controller, which records nothing.
+void keep_last_recording(const tools::Options& options, const std::string& resource);
 // Nothing without the option. To FILE.NAME for a resource of several. `clock` and `io` must outlive
 // it. `trial`: RecordedStart::trial.
 base::Result<std::unique_ptr<vm::Recorder>> open_recorder(

@@ -9,6 +9,7 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/event_text.h"
 #include "tools/stvm/key_trust.h"
+#include "tools/stvm/record.h"
 
 namespace stvm {
 namespace {
@@ -123,6 +124,7 @@ base::Status ServedResource::start(const ResourceController::Settings& settings,
                 vm::DeviceEvent event, const std::string& device, const std::string& text) {
     if (const auto log = weak.lock()) log->take_device(event, device, text);
   };
+  if (!own.limits.halted) keep_last_recording(own.options, name_);
   auto running = ResourceController::start(own, clock, boot_->retained);
   if (!running.ok()) return running.error();
   running_ = std::move(*running);
