@@ -46,7 +46,7 @@ for options in '--device foo.x=1 v3.st' '--record /nonexistent/x v3.st' '--code-
     [ "$code" -ne 0 ] && [ ! -e $folder ] || fail "$code, and there is a folder: $options: $(ls $folder)"
   done
 done
-said '^stvm: R0501: --trust nowhere.toml: '
+said '^stvm: R0501: nowhere.toml: |built without OpenSSL'
 mkdir empty
 expect 7 stvm serve --dir empty --code-limit 10 v3.st
 [ -d empty ] || fail "a folder that was there is gone"

@@ -65,7 +65,7 @@ base::Result<std::string> ServedResource::admit(const std::optional<ir::Verified
                                                 const StartTrust& trust) {
   if (trust.path.empty()) return std::string();
   auto made = make_trust(trust.path, store_);
-  if (!made.ok()) return base::Error{made.error().refusal, "--trust " + made.error().text};
+  if (!made.ok()) return made.error();
   trust_ = std::move(*made);
   if (!given || store_.boots() == given->digest()) return std::string();
   const auto found = trust.images.find(base::sha256(given->encoded()));
