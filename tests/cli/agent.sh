@@ -100,9 +100,14 @@ cp broker.toml good.toml
 echo nonsense >broker.toml
 kill -HUP "$(cat two-agent.pid)"
 wait_for 'agent: SIGHUP: stays connected' cat two.agent.log
+sed 's#^ca = .*#ca = "/nowhere/ca.pem"#' good.toml >broker.toml
+cmp -s good.toml broker.toml && fail "the broker has no ca"
+kill -HUP "$(cat two-agent.pid)"
+wait_for 'agent: connects as before: .*nowhere' cat two.agent.log
+wait_for '^two .*reached' "$bin/stvm" fleet status --fleet fleet.toml
 cp good.toml broker.toml
 kill -HUP "$(cat two-agent.pid)"
-wait_for 'agent: SIGHUP: connects anew' cat two.agent.log
+wait_for '^2$' grep -c 'agent: SIGHUP: connects anew' two.agent.log
 wait_for '^two .*reached' "$bin/stvm" fleet status --fleet fleet.toml
 
 # An agent is killed: its will says so. What is ordered waits, and it comes back to it.

@@ -79,9 +79,9 @@ void quote_resource(const ProjectFile& file, Project& project) {
   project.compile.resource_at = {pos(at), pos(end)};
 }
 
-// What is written into `quoted` belongs among the sources, for messages. The stc.toml that is
-// nearest to `path` (docs/PROJECT.md). `sources` is replaced when `path` is
-// the folder of a file that lists its own.
+// Takes over the stc.toml that is nearest to `path` (docs/PROJECT.md). `sources` is replaced when
+// `path` is the folder of a file that lists its own. `quoted` becomes the file when messages may
+// show a line of it.
 base::Status apply_project_file(const std::string& path, Project& project,
                                 std::vector<std::string>& sources,
                                 std::optional<ProjectFile>& quoted) {

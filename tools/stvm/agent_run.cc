@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 #include "tools/common/child.h"
 #include "tools/common/exit.h"
@@ -111,13 +112,20 @@ base::Status serve_broker(const tools::Options& options, ConnectBroker connect) 
   memory.read();
   StopSignal::install_service();
   std::optional<FleetBroker> next = *where;
+  std::optional<FleetBroker> good;  // with which it was connected last
   while (next) {
     const AgentTopics topics{next->prefix};
     mqtt::Settings settings = next->settings;
     settings.client = "stvm-" + *name;
     settings.will = mqtt::Message{topics.of(*name, kAgentOnline), {'0'}, true};
     base::Result<std::unique_ptr<mqtt::Broker>> broker = connect(settings);
-    if (!broker.ok()) return broker.error();
+    if (!broker.ok()) {
+      if (!good) return broker.error();
+      log_agent("connects as before: " + base::to_string(broker.error()));
+      next = std::exchange(good, std::nullopt);
+      continue;
+    }
+    good = next;
     Agent agent(*name, topics,
                 {**broker, memory, **trust,
                  [&] {

@@ -23,15 +23,17 @@ base::Error unsafe(const std::string& path, const std::string& why) {
   return {base::Refusal::kUnsafeFolder, path + ": " + why};
 }
 
-base::Status make_folder(const std::string& path) {
-  if (::mkdir(path.c_str(), 0700) == 0 || errno == EEXIST) return base::Ok{};
+// False: it was there.
+base::Result<bool> make_folder(const std::string& path) {
+  if (::mkdir(path.c_str(), 0700) == 0) return true;
+  if (errno == EEXIST) return false;
   const int code = errno;
   const std::string parent = std::filesystem::path(path).parent_path();
   if (code != ENOENT || parent.empty() || parent == path) {
     return unwritable(path, std::strerror(code));
   }
-  if (base::Status made = make_folder(parent); !made.ok()) return made;
-  if (::mkdir(path.c_str(), 0700) == 0) return base::Ok{};
+  if (base::Result<bool> made = make_folder(parent); !made.ok()) return made;
+  if (::mkdir(path.c_str(), 0700) == 0) return true;
   return unwritable(path, std::strerror(errno));
 }
 
@@ -41,13 +43,14 @@ base::Status check_folder(const std::string& path, bool parent) {
   if (::stat(path.c_str(), &info) != 0) return unwritable(path, std::strerror(errno));
   const bool ours = info.st_uid == ::geteuid() || info.st_uid == 0;
   if (!ours) {
-    return unsafe(path, "it belongs to another user, who could exchange what runs; use another "
-                        "directory, or `chown` it");
+    return unsafe(path,
+                  "it belongs to another user, who could exchange what runs; use another "
+                  "directory, or `chown` it");
   }
   const bool by_others = (info.st_mode & (S_IWGRP | S_IWOTH)) != 0;
   if (!by_others || (parent && (info.st_mode & S_ISVTX) != 0)) return base::Ok{};
-  return unsafe(path, "others can write it and could exchange what runs: `chmod go-w " + path +
-                          "`");
+  return unsafe(path,
+                "others can write it and could exchange what runs: `chmod go-w " + path + "`");
 }
 
 base::Status check_folders(std::filesystem::path at) {
@@ -63,11 +66,10 @@ base::Status check_folders(std::filesystem::path at) {
 
 base::Result<StateFolder> StateFolder::open(const std::string& path, bool create) {
   std::error_code error;
-  const bool is_new = !std::filesystem::exists(path, error);
-  if (is_new && !create && !error) {
+  if (!create && !std::filesystem::exists(path, error) && !error) {
     return base::Error{base::Refusal::kFileNotFound, path + " does not exist"};
   }
-  base::Status made = make_folder(path);
+  const base::Result<bool> made = make_folder(path);
   if (!made.ok()) return made.error();
   const std::string real = std::filesystem::canonical(path, error);
   if (error) return unwritable(path, error.message().c_str());
@@ -91,7 +93,7 @@ base::Result<StateFolder> StateFolder::open(const std::string& path, bool create
     // Some file systems of networks lock files only.
     if (one == &lock || read_only) return unwritable(file, std::strerror(errno));
   }
-  return StateFolder(real, {std::move(lock), std::move(folder)}, is_new);
+  return StateFolder(real, {std::move(lock), std::move(folder)}, *made);
 }
 
 bool holds_program(const std::string& directory) {
