@@ -21,6 +21,7 @@
 #   make test-arm64  golden files and random programs on AArch64, under qemu
 #   make minimal  build and test with every adapter off
 #   make clang    build and test by clang 16, without a warning as by g++
+#   make clang-read  clang 16 reads all sources of the product, without a warning, and builds nothing
 #   make install PREFIX=DIR   stc, stvm, their documents and the unit of the service
 #   make deb      the Debian packages, in build/release
 #   make archives   static archives for amd64 and arm64 and an OCI image, in build/archives; each runs
@@ -33,7 +34,7 @@ JOBS := $(shell nproc)
 # Some tests wait for what other processes do, and a core is free meanwhile.
 TEST_JOBS := $(shell expr $(JOBS) + 1)
 
-.PHONY: install deb archives release all build setup demo demo-fleet test test-ansible test-arm64 minimal minimal-scripts hard clang bench bench-large bench-pause format asan asan-clang asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
+.PHONY: install deb archives release all build setup demo demo-fleet test test-ansible test-arm64 minimal minimal-scripts hard clang clang-read bench bench-large bench-pause format asan asan-clang asan-memory ubsan tsan fuzz differential soak maths mutate coverage docs clean
 
 all: build
 
@@ -88,6 +89,11 @@ clang: setup
 	@cmake --preset clang >/dev/null
 	@cmake --build build/clang -j $(JOBS)
 	@ctest --test-dir build/clang --output-on-failure -j $(TEST_JOBS)
+
+clang-read: setup
+	@scripts/setup.sh clang-16
+	@cmake --preset $@ >/dev/null
+	@cmake --build build/$@ -j $(JOBS)
 
 asan asan-clang ubsan: setup
 	@[ $@ != asan-clang ] || scripts/setup.sh clang-16 libclang-rt-16-dev

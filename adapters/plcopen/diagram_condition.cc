@@ -17,9 +17,9 @@ using network::Modifier;
 constexpr size_t kMaxExpression = 20'000;  // shared parts of a network are written out each time
 
 // What a link carries, as an expression of Structured Text.
-class Expression {
+class ExpressionText {
  public:
-  Expression(const network::Network& all) : all_(all) {}
+  ExpressionText(const network::Network& all) : all_(all) {}
 
   std::string text(const std::vector<Link>& links) {
     std::string out;
@@ -135,7 +135,7 @@ constexpr const char* kComputeInAction =
 
 std::string links_text(const network::Network& all, const std::vector<Link>& links, Node at,
                        Reporter& report) {
-  Expression expression(all);
+  ExpressionText expression(all);
   std::string text = expression.text(links);
   if (expression.problem().empty() && !links.empty()) return text;
   report.add(Code::kXmlBody, at,

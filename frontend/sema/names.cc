@@ -4,12 +4,8 @@
 #include "base/nearest_name.h"
 
 namespace frontend {
-namespace {
 
-// "Pump" of "A.B.Pump".
 std::string_view last_name(std::string_view name) { return name.substr(name.rfind('.') + 1); }
-
-}  // namespace
 
 size_t FoldHash::operator()(std::string_view name) const {
   const uint64_t hash = base::name_hash(name);

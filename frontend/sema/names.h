@@ -21,6 +21,9 @@ struct FoldEqual {
 template <class T>
 using NameMap = std::unordered_map<std::string_view, T, FoldHash, FoldEqual>;
 
+// "Pump" of "A.B.Pump", all of it without a dot.
+std::string_view last_name(std::string_view name);
+
 // The way out of a mistake.
 struct Fix {
   Fix() = default;

@@ -175,7 +175,8 @@ answers stvm-fleet 0 at fleet undo next.fleet --yes
 answers stvm-fleet 0 at fleet accept next.fleet --yes
 sed 's/more : INT/more, most : INT/' next/main.st >fourth.st
 stvm accept --dir plc >/dev/null 2>&1 || true
-expect 0 stvm image --dir plc -o now.img
+answers stvm-image 0 at image -o now.img
+json "d['file'] == 'now.img' and d['bytes'] == $(wc -c <now.img)"
 expect 0 stc fleet now.img fourth.st -o roll.fleet --table free
 printf '[controllers.plc]\ndir = "plc"\n[[wave]]\ncount = 1\nsoak = "0s"\n' >fleet.toml
 answers stvm-fleet 0 stvm fleet roll roll.fleet --fleet fleet.toml --dry-run
@@ -186,6 +187,30 @@ answers stvm-journal 0 at journal
 answers stvm-events 0 at events
 answers refused 7 at get Main.nothing
 answers stvm-stop 0 at stop
+
+# Keys, where OpenSSL is there.
+code=0
+stc key new office -o office.key >out 2>err || code=$?
+if [ "$code" -eq 0 ]; then
+  cp out keys.toml
+  answers stc-key 0 stc key new chief --revokes --days 3 -o chief.key
+  json 'd["revokes"] and d["until"] > "2026" and d["file"] == "chief.key"'
+  python3 -c 'import json; print(json.load(open("out"))["trust"])' >>keys.toml
+  answers stc-key 0 stc key new other -o other.key
+  json 'd["until"] is None and d["key"] in d["trust"]'
+  answers stc-key 0 stc key sign plant.img --key office.key --target plc -o plant.signed
+  json "d['content'] == '$(sha256sum <plant.img | cut -d' ' -f1)' and d['signer'] is None"
+  answers stc-key 0 stc key verify plant.signed --trust keys.toml
+  json '(d["signer"], d["kind"], d["target"]) == ("office", "image", "plc")'
+  answers refused 7 stc key verify plant.img --trust keys.toml
+  answers stc-key 0 stc key revoke office --trust keys.toml --key chief.key -o gone.signed
+  json 'd["kind"] == "list of revoked keys" and d["target"] is None'
+  (echo 'name = "plc"' && cat keys.toml) >plc.toml
+  serve locked plant.signed --trust plc.toml
+  answers stvm-revoke 0 stvm revoke gone.signed --dir locked
+else
+  seen="$seen stc-key stvm-revoke"
+fi
 
 # Every schema was used, and every command with this form has one.
 for file in "$schemas"/*.schema.json; do

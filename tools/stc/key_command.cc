@@ -15,6 +15,7 @@
 #include "online_change/package/package.h"
 #include "tools/common/descriptor.h"
 #include "tools/common/files.h"
+#include "tools/common/json.h"
 #include "tools/common/trust_file.h"
 #include "tools/common/utc_time.h"
 #include "tools/stc/commands.h"
@@ -43,6 +44,7 @@ constexpr tools::OptionRow kKeyOptions[] = {
     {"--sequence", "N", "sign: its place in the plan (default: the time in ns)"},
     {"--target", "NAME", "sign: the only controller that takes it (default: any)"},
     {"--revokes", nullptr, "new: the key is for lists of revoked keys"},
+    tools::kFormatOption,
 };
 constexpr tools::Command kKeyCommand{
     "key", "new NAME | sign FILE | verify FILE | revoke KEY...",
@@ -52,6 +54,41 @@ constexpr tools::Command kKeyCommand{
 #ifdef STC_HAS_KEYS
 
 base::Error usage(const std::string& text) { return {base::Refusal::kUsage, "key: " + text}; }
+
+bool wants_json(const tools::Options& options) { return options.text("--format") == "json"; }
+
+void time_field(tools::JsonWriter& json, const char* name, int64_t time_s) {
+  json.key(name);
+  time_s == INT64_MAX ? json.null() : json.value(tools::utc_text(time_s));
+}
+
+// What `new` has made, for those who do not take the lines of a trust file.
+std::string json_of(const tools::TrustedKey& key, const std::string& file,
+                    const std::string& lines) {
+  tools::JsonWriter json;
+  json.begin_object().field("file", file).field("name", key.name);
+  json.field("key", base::to_hex(key.key)).field("revokes", key.revokes);
+  time_field(json, "until", key.until_s);
+  json.field("trust", lines).end_object();
+  return json.finish();
+}
+
+// What a signed file says. `signer`: "" when nobody was asked for a name.
+std::string json_of(const Statement& statement, const std::string& file,
+                    const std::string& signer) {
+  tools::JsonWriter json;
+  json.begin_object().field("file", file);
+  json.field("kind", online_change::signed_kind_name(statement.kind));
+  json.field("bytes", statement.size).field("content", base::to_hex(statement.content));
+  json.field("key", base::to_hex(statement.key)).key("signer");
+  signer.empty() ? json.null() : json.value(signer);
+  json.field("plan", statement.plan).field("sequence", statement.sequence);
+  time_field(json, "until", statement.expires_s);
+  json.key("target");
+  statement.target.empty() ? json.null() : json.value(statement.target);
+  json.end_object();
+  return json.finish();
+}
 
 int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -122,8 +159,11 @@ base::Status make_new(const tools::Options& options) {
   base::Result<tools::TrustFile> readable = tools::parse_trust_file("key", lines);
   if (!readable.ok()) return usage("a name has letters, digits, - and _: " + readable.error().text);
   base::Status written = write_private(options.text("--output"), key->pem);
-  if (written.ok()) std::fputs(lines.c_str(), stdout);
-  return written;
+  if (!written.ok()) return written;
+  const std::string& answer =
+      wants_json(options) ? json_of(made, options.text("--output"), lines) : lines;
+  std::fputs(answer.c_str(), stdout);
+  return base::Ok{};
 }
 
 base::Result<SignedKind> kind_of(base::ByteSpan content) {
@@ -163,8 +203,13 @@ base::Status sign_content(const tools::Options& options, base::ByteSpan content,
   base::Result<online_change::Signature> signature =
       keys::sign(*pem, online_change::message_of(statement));
   if (!signature.ok()) return signature.error();
-  return tools::write_file(options.text("--output"),
-                           online_change::encode(statement, *signature, content));
+  const std::string& file = options.text("--output");
+  base::Status written =
+      tools::write_file(file, online_change::encode(statement, *signature, content));
+  if (written.ok() && wants_json(options)) {
+    std::fputs(json_of(statement, file, {}).c_str(), stdout);
+  }
+  return written;
 }
 
 // What is signed already is signed anew.
@@ -228,7 +273,11 @@ base::Status verify(const tools::Options& options) {
   base::Result<const tools::TrustedKey*> key =
       tools::check_signature(*trust, *file, keys::verify, now_s());
   if (!key.ok()) return base::Error{key.error().refusal, path + ": " + key.error().text};
-  print_statement(file->statement, **key);
+  if (wants_json(options)) {
+    std::fputs(json_of(file->statement, path, (*key)->name).c_str(), stdout);
+  } else {
+    print_statement(file->statement, **key);
+  }
   return base::Ok{};
 }
 

@@ -32,13 +32,13 @@ constexpr tools::Command kPackageCommand{
     "package", "NEW...", "Makes the change package from a running version to a new one.",
     kPackageOptions, 1};
 
-struct Made {
+struct MadePackage {
   base::Digest base{};
   base::Digest next{};
   base::Bytes bytes;
 };
 
-base::Result<Made> make(const tools::Options& options) {
+base::Result<MadePackage> make(const tools::Options& options) {
   if (!options.has("--base") || !options.has("--output")) {
     return base::Error{base::Refusal::kUsage, "package: --base and --output are required"};
   }
@@ -69,14 +69,14 @@ base::Result<Made> make(const tools::Options& options) {
   }
   auto package = online_change::make_package(old_version->bytes, next->bytes);
   if (!package.ok()) return package.error();
-  Made made{ir::digest(old_version->bytes), ir::digest(next->bytes),
-            online_change::encode(*package)};
+  MadePackage made{ir::digest(old_version->bytes), ir::digest(next->bytes),
+                   online_change::encode(*package)};
   base::Status written = tools::write_file(options.text("--output"), made.bytes);
   if (!written.ok()) return written.error();
   return made;
 }
 
-std::string json_of(const std::string& file, const Made& made) {
+std::string json_of(const std::string& file, const MadePackage& made) {
   tools::JsonWriter json;
   json.begin_object().field("file", file);
   json.field("digest", base::to_hex(base::sha256(made.bytes)));
@@ -101,7 +101,7 @@ int follow(const tools::Options& options) {
 
 int run_package(const tools::Options& options) {
   if (options.has("--watch")) return follow(options);
-  base::Result<Made> made = make(options);
+  base::Result<MadePackage> made = make(options);
   if (!made.ok()) return tools::refuse("stc", made.error());
   if (options.text("--format") == "json") {
     std::fputs(json_of(options.text("--output"), *made).c_str(), stdout);

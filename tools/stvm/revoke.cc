@@ -3,6 +3,7 @@
 
 #include "tools/common/exit.h"
 #include "tools/common/files.h"
+#include "tools/common/json.h"
 #include "tools/common/signed_content.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
@@ -10,7 +11,7 @@
 namespace stvm {
 namespace {
 
-constexpr tools::OptionRow kRevokeOptions[] = {STVM_CONTROLLER_OPTIONS};
+constexpr tools::OptionRow kRevokeOptions[] = {tools::kFormatOption, STVM_CONTROLLER_OPTIONS};
 constexpr tools::Command kRevokeCommand{
     "revoke",       "FILE", "Brings a list of revoked keys (`stc key revoke`) to a controller.",
     kRevokeOptions, 1,      1};
@@ -27,8 +28,15 @@ base::Status revoke(const tools::Options& options) {
   base::Result<vm::StatusReport> status = client->status();
   if (!status.ok()) return status.error();
   base::Status brought = client->stage(*list, 0);
-  if (brought.ok()) std::printf("revoked: the controller keeps the list\n");
-  return brought;
+  if (!brought.ok()) return brought;
+  if (options.text("--format") == "json") {
+    tools::JsonWriter json;
+    json.begin_object().field("kept", true).end_object();
+    std::fputs(json.finish().c_str(), stdout);
+  } else {
+    std::printf("revoked: the controller keeps the list\n");
+  }
+  return base::Ok{};
 }
 
 int run_revoke(const tools::Options& options) {

@@ -7,6 +7,7 @@
 #include "frontend/sema/configuration/task_attributes.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/declarations/collection.h"
+#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/interfaces.h"
 #include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/declarations/rename_rules.h"
@@ -45,7 +46,8 @@ bool check_resource_names(const Phase& phase, const ConfigDecl& config) {
                   "move them into a RESOURCE");
     } else {
       phase.error(DiagnosticCode::kDuplicateName, resource.name.span,
-                  "RESOURCE " + quoted(resource.name) + " is declared twice");
+                  declared_twice(phase.sema().sources, resource.name.text, resource.name.span,
+                                 names.at(resource.name.text)->name.span));
     }
   }
   return good;
@@ -134,7 +136,7 @@ void Configuration::configure_resource(const ResourceDecl& resource) {
     error(DiagnosticCode::kTooComplex, resource.name.span, "too many tasks");
     return;
   }
-  for (const TaskDecl& task : resource.tasks) add_task(task);
+  for (const TaskDecl& task : resource.tasks) add_task(task, resource);
   check_base_cycle(*this, resource.tasks);
   for (const ProgramDecl& decl : resource.programs) add_instance(decl, resource);
 }
@@ -164,13 +166,18 @@ std::optional<uint32_t> Configuration::find_program(const ProgramDecl& decl) {
   return std::nullopt;
 }
 
+void Configuration::check_once(const Name& name, const Name& other) {
+  if (!ir::same_name(name.text, other.text)) return;
+  error(DiagnosticCode::kDuplicateName, name.span,
+        declared_twice(sema_.sources, name.text, name.span, other.span));
+}
+
 void Configuration::add_instance(const ProgramDecl& decl, const ResourceDecl& resource) {
   auto pou = find_program(decl);
   if (!pou) return;
-  for (const ir::ProgramInstance& other : sema_.program.instances) {
-    if (!ir::same_name(other.name, decl.name.text)) continue;
-    error(DiagnosticCode::kDuplicateName, decl.name.span,
-          "program " + quoted(decl.name) + " is declared twice");
+  for (const ProgramDecl& other : resource.programs) {
+    if (&other == &decl) break;
+    check_once(decl.name, other.name);
   }
   ir::ProgramInstance instance;
   instance.name = decl.name.text;

@@ -25,9 +25,10 @@ class Configuration : public Phase {
   ir::ConstId program_arguments(const ProgramDecl& decl, const PouInfo& info,
                                 std::vector<Connection>& connections);
   void retain_program(const PouInfo& info);
+  void check_once(const Name& name, const Name& other);
   uint32_t clone_program(uint32_t original, const ProgramDecl& decl);
   // tasks.cc
-  void add_task(const TaskDecl& decl);
+  void add_task(const TaskDecl& decl, const ResourceDecl& resource);
   uint32_t event_of(ExprId expr);
 };
 

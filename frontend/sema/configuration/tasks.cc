@@ -14,11 +14,10 @@ constexpr int64_t kMaxPriority = 65535;
 
 }  // namespace
 
-void Configuration::add_task(const TaskDecl& decl) {
-  for (const ir::Task& task : sema_.program.tasks) {
-    if (!ir::same_name(task.name, decl.name.text)) continue;
-    error(DiagnosticCode::kDuplicateName, decl.name.span,
-          "task " + quoted(decl.name) + " is declared twice");
+void Configuration::add_task(const TaskDecl& decl, const ResourceDecl& resource) {
+  for (const TaskDecl& other : resource.tasks) {
+    if (&other == &decl) break;
+    check_once(decl.name, other.name);
   }
   ir::Task task;
   task.name = decl.name.text;

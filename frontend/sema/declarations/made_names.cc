@@ -55,10 +55,6 @@ void add_old_names(Names& out, std::string_view rule) {
   }
 }
 
-std::string_view last_name(std::string_view qualified) {
-  return qualified.substr(qualified.rfind('.') + 1);  // all of it without a dot
-}
-
 // What stands after the last dot follows in the type.
 struct Walk {
   ir::TypeId type;

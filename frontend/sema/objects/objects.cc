@@ -2,6 +2,7 @@
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/declarations/collection.h"
 
+#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/rename_rules.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"
@@ -14,6 +15,18 @@ std::string code_name(const std::string& block, const PouDecl& decl) {
   if (decl.kind == PouKind::kGetter) name += ".GET";
   if (decl.kind == PouKind::kSetter) name += ".SET";
   return name;
+}
+
+// What has the name of `decl` in its block already.
+base::SourceSpan same_name_in(const Declarations& declared, const PouInfo& owner,
+                              const MemberCode& code, const PouDecl& decl) {
+  const auto variable = owner.names.find(decl.name.text);
+  if (variable != owner.names.end()) return declared.variables[variable->second.index].name.span;
+  uint32_t other = decl.kind == PouKind::kGetter ? code.getter : code.setter;
+  for (uint32_t slot : {code.method, code.getter, code.setter}) {
+    if (other == kNoPou) other = slot;
+  }
+  return declared.pous[other].decl->name.span;
 }
 
 }  // namespace
@@ -36,8 +49,10 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   const bool taken = slot != kNoPou || (accessor ? code.method != kNoPou : code.is_property()) ||
                      owner.names.contains(decl.name.text);
   if (taken) {
+    const base::SourceSpan other = same_name_in(sema_.declared, owner, code, decl);
+    if (other.begin == decl.name.span.begin) return;  // two GETs: the parser has said so
     error(DiagnosticCode::kDuplicateName, decl.name.span,
-          quoted(decl.name) + " is declared twice in " + quoted(owner.decl->name));
+          declared_twice(sema_.sources, decl.name.text, decl.name.span, other));
     return;
   }
   slot = static_cast<uint32_t>(sema_.declared.pous.size());

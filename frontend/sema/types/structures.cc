@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/declarations/rename_rules.h"
 #include "frontend/sema/declarations/variables.h"
@@ -169,8 +170,10 @@ bool Types::add_field(StructBuild& build, const VarDecl& field) {
     StructureField where{static_cast<uint32_t>(build.type.members.size()), -1};
     if (bit) where = add_bit(build, name, member.init, renamed_from(sema_.tree, field.attributes));
     where.spec = field.spec;
-    if (!build.names.emplace(name.text, where).second) {
-      error(DiagnosticCode::kDuplicateName, name.span, quoted(name) + " is declared twice");
+    if (auto [other, is_new] = build.names.emplace(name.text, where); !is_new) {
+      const base::SourceSpan type_of_other = sema_.tree[other->second.spec].span;
+      error(DiagnosticCode::kDuplicateName, name.span,
+            declared_twice(sema_.sources, name.text, name.span, type_of_other));
       return false;
     }
     if (bit) continue;
