@@ -298,3 +298,17 @@ ST
 sed 's/^# //' page/stc.toml >all.toml && mv all.toml page/stc.toml
 expect 0 stc check page
 grep -qE '^(resource|safe|health) = ' page/stc.toml || fail "nothing of the page needs a program any more"
+
+# A file that two of the paths name is one file, by whatever path.
+mkdir once once/lib
+printf 'PROGRAM Main VAR n : INT; END_VAR n := Twice(n); END_PROGRAM\n' >once/main.st
+printf 'FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := x * 2; END_FUNCTION\n' >once/lib/twice.st
+ln -s lib/twice.st once/again.st
+for paths in 'once/main.st once/lib ./once/lib/twice.st' 'once/main.st once/again.st once/lib' 'once/lib once/main.st once/main.st'; do
+  expect 0 stc check $paths
+done
+cp once/lib/twice.st once/copy.st
+expect 1 stc check once/main.st once/lib once/copy.st
+said 'E2002'
+printf 'sources = ["main.st", "lib"]\n' >once/stc.toml
+expect 0 stc check once once/lib/twice.st once

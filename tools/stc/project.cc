@@ -1,7 +1,10 @@
 #include "tools/stc/project.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "base/limits.h"
@@ -147,6 +150,22 @@ base::Result<std::vector<std::string>> expand(const std::string& path, Project& 
   return found;
 }
 
+// What several of the paths name comes once: `stc check . main.st`.
+class Once {
+ public:
+  explicit Once(bool counts) : counts_(counts) {}
+
+  bool is_first(const std::string& file) {
+    struct stat about {};
+    if (!counts_ || ::stat(file.c_str(), &about) != 0) return true;
+    return seen_.emplace(about.st_dev, about.st_ino).second;
+  }
+
+ private:
+  bool counts_;  // one path names no file twice
+  std::set<std::pair<dev_t, ino_t>> seen_;
+};
+
 }  // namespace
 
 std::vector<std::string> Project::held_paths() const {
@@ -171,11 +190,13 @@ base::Result<Project> load_project(const std::vector<std::string>& paths,
   project.paths = paths;
   std::optional<ProjectFile> quoted;
   Importer importer(project.sources);
+  Once once(paths.size() > 1);
   uint64_t bytes = 0;
   for (const std::string& path : paths) {
     base::Result<std::vector<std::string>> files = expand(path, project, quoted);
     if (!files.ok()) return files.error();
     for (const std::string& file : *files) {
+      if (!once.is_first(file)) continue;
       if (needs_import(file)) {
         base::Status status = importer.add(file);
         if (!status.ok()) return status.error();
