@@ -218,6 +218,7 @@ complete -c stc -n '__fish_seen_subcommand_from key' -l plan -x -d 'sign: the pl
 complete -c stc -n '__fish_seen_subcommand_from key' -l sequence -x -d 'sign: its place in the plan (default: the time in ns)'
 complete -c stc -n '__fish_seen_subcommand_from key' -l target -x -d 'sign: the only controller that takes it (default: any)'
 complete -c stc -n '__fish_seen_subcommand_from key' -l revokes -d 'new: the key is for lists of revoked keys'
+complete -c stc -n '__fish_seen_subcommand_from key' -l format -x -a 'text json' -d 'text (default) or json'
 complete -c stc -n '__fish_seen_subcommand_from key' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stc -n '__fish_seen_subcommand_from key' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
 complete -c stc -n '__fish_seen_subcommand_from help' -l format -x -a 'text json' -d 'text (default) or json'
