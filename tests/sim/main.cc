@@ -90,6 +90,8 @@ Sum run_seed(uint64_t seed, const Options& options) {
   return out;
 }
 
+constexpr int kMostSkipped = 20;
+
 // In a process of its own, so that a crash is a finding too.
 Sum isolated(uint64_t seed, const Options& options) {
   Sum out;
@@ -122,7 +124,15 @@ Sum isolated(uint64_t seed, const Options& options) {
 Sum run_share(uint64_t number, const Options& options) {
   Sum out;
   for (uint64_t i = number; i < options.count; i += options.jobs) {
-    out.add(isolated(options.first + i, options));
+    uint64_t seed = options.first + i;
+    Sum one = isolated(seed, options);
+    // Another compiler makes another program of a seed. Hours are of a plant that can run.
+    for (int more = 0; options.hours != 0 && one.skipped != 0 && more < kMostSkipped; ++more) {
+      out.add(one);
+      seed += options.count;
+      one = isolated(seed, options);
+    }
+    out.add(one);
   }
   return out;
 }
