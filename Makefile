@@ -93,7 +93,7 @@ clang: setup
 clang-read: setup
 	@scripts/setup.sh clang-16
 	@cmake --preset $@ >/dev/null
-	@cmake --build build/$@ -j $(JOBS)
+	@cmake --build build/$@ -j $(JOBS) --target stc stvm
 
 asan asan-clang ubsan: setup
 	@[ $@ != asan-clang ] || scripts/setup.sh clang-16 libclang-rt-16-dev
