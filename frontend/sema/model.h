@@ -132,6 +132,7 @@ struct StructureField {
   uint32_t member = 0;
   int32_t bit = -1;  // of a BIT member: its number in the BYTE
   SpecId spec = {};  // as written
+  base::SourceSpan name = {};
 };
 
 // A MOCK_FUNCTION declaration, and the POU that it became.

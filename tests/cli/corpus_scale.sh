@@ -29,7 +29,7 @@ echo "$lines lines, $pous POUs, $types types: check $check_ms ms of processor ti
   "$((lines * 1000 / (build_ms + 1))) lines per second"
 # Generous: slow machines and builds with sanitizers must hold it too.
 budget=5000
-[ -n "$seccomp" ] || budget=60000  # under sanitizers
+[ $sanitized = no ] || budget=60000
 [ "$build_ms" -lt "${STC_SCALE_BUDGET_MS:-$budget}" ] || fail "build took $build_ms ms of processor time"
 
 names=checks,wrong

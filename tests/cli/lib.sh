@@ -14,9 +14,11 @@ cleanup() {
 }
 trap cleanup EXIT INT TERM
 
-# Sanitizers make system calls that --seccomp does not allow; "" there.
-seccomp=--seccomp
-if grep -qE '^STC_SANITIZE:[A-Z]*=.*(address|thread)' "$2/CMakeCache.txt" 2>/dev/null; then seccomp=; fi
+# yes: built with a sanitizer, which makes system calls that --seccomp does not allow.
+sanitized=no seccomp=--seccomp
+if grep -qE '^STC_SANITIZE:[A-Z]*=.*(address|thread)' "$2/CMakeCache.txt" 2>/dev/null; then
+  sanitized=yes seccomp=
+fi
 
 fail() {
   echo "FAILED: $*"

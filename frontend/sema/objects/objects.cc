@@ -17,15 +17,13 @@ std::string code_name(const std::string& block, const PouDecl& decl) {
   return name;
 }
 
-// What has the name of `decl` in its block already.
+// Where its block has that name already: a variable, a method or a property.
 base::SourceSpan same_name_in(const Declarations& declared, const PouInfo& owner,
-                              const MemberCode& code, const PouDecl& decl) {
-  const auto variable = owner.names.find(decl.name.text);
+                              const MemberCode& code, const Name& name) {
+  const auto variable = owner.names.find(name.text);
   if (variable != owner.names.end()) return declared.variables[variable->second.index].name.span;
-  uint32_t other = decl.kind == PouKind::kGetter ? code.getter : code.setter;
-  for (uint32_t slot : {code.method, code.getter, code.setter}) {
-    if (other == kNoPou) other = slot;
-  }
+  const uint32_t accessor = code.getter != kNoPou ? code.getter : code.setter;
+  const uint32_t other = code.method != kNoPou ? code.method : accessor;
   return declared.pous[other].decl->name.span;
 }
 
@@ -49,7 +47,7 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   const bool taken = slot != kNoPou || (accessor ? code.method != kNoPou : code.is_property()) ||
                      owner.names.contains(decl.name.text);
   if (taken) {
-    const base::SourceSpan other = same_name_in(sema_.declared, owner, code, decl);
+    const base::SourceSpan other = same_name_in(sema_.declared, owner, code, decl.name);
     if (other.begin == decl.name.span.begin) return;  // two GETs: the parser has said so
     error(DiagnosticCode::kDuplicateName, decl.name.span,
           declared_twice(sema_.sources, decl.name.text, decl.name.span, other));

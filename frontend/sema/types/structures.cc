@@ -170,10 +170,10 @@ bool Types::add_field(StructBuild& build, const VarDecl& field) {
     StructureField where{static_cast<uint32_t>(build.type.members.size()), -1};
     if (bit) where = add_bit(build, name, member.init, renamed_from(sema_.tree, field.attributes));
     where.spec = field.spec;
+    where.name = name.span;
     if (auto [other, is_new] = build.names.emplace(name.text, where); !is_new) {
-      const base::SourceSpan type_of_other = sema_.tree[other->second.spec].span;
       error(DiagnosticCode::kDuplicateName, name.span,
-            declared_twice(sema_.sources, name.text, name.span, type_of_other));
+            declared_twice(sema_.sources, name.text, name.span, other->second.name));
       return false;
     }
     if (bit) continue;
