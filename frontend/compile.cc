@@ -92,7 +92,7 @@ std::unique_ptr<Parsed> parse_project(const base::SourceMap& sources, const Comp
   parse_all(parsed->sources, options, parsed->tree, diagnostics);
   if (has_open_comment(diagnostics)) return nullptr;
   map_addresses(parsed->tree, diagnostics);
-  sfc::declare_charts(parsed->tree, diagnostics);
+  sfc::declare_charts(parsed->tree, parsed->sources, diagnostics);
   check_renames(parsed->tree, diagnostics);
   return parsed;
 }

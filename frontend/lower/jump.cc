@@ -4,6 +4,7 @@
 
 #include "frontend/lower/statements.h"
 #include "frontend/lower/try_code.h"
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sema/declarations/variables.h"
 
 namespace frontend {
@@ -28,9 +29,17 @@ Flow::Labels Statements::labels_of(Range32 list) {
             "`" + std::string(name.text) + "` is a variable and cannot be a label",
             "write `:=` to assign to it");
     }
-    if (!labels.emplace(name.text, build_.new_block()).second) {
+    if (labels.emplace(name.text, build_.new_block()).second) continue;
+    for (uint32_t first = 0; first < i; ++first) {
+      const Stmt& other = tree_[tree_.stmt_lists[list.first + first]];
+      if (other.kind != StmtKind::kLabel ||
+          !ir::same_name(tree_.name(other.name).text, name.text)) {
+        continue;
+      }
       error(DiagnosticCode::kDuplicateName, name.span,
-            "the label `" + std::string(name.text) + "` stands twice");
+            "the label " +
+                declared_twice(sema_.sources, name.text, name.span, tree_.name(other.name).span));
+      break;
     }
   }
   return labels;

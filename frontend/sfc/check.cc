@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sfc/play.h"
 
 namespace frontend::sfc {
@@ -32,16 +33,20 @@ bool check_step_list(const std::vector<Name>& list, const Net& net,
   return good;
 }
 
-bool check_transitions(const Chart& chart, const Net& net, base::Diagnostics& diagnostics) {
+bool check_transitions(const Chart& chart, const Net& net, const base::SourceMap& sources,
+                       base::Diagnostics& diagnostics) {
   bool good = true;
-  NameMap<bool> names;
+  NameMap<base::SourceSpan> names;
   for (const ChartTransition& transition : chart.transitions) {
     good = check_step_list(transition.from, net, diagnostics) && good;
     good = check_step_list(transition.to, net, diagnostics) && good;
     good = good && !transition.from.empty() && !transition.to.empty();
-    if (transition.name.empty() || names.emplace(transition.name.text, true).second) continue;
+    if (transition.name.empty()) continue;
+    const auto [first, fresh] = names.emplace(transition.name.text, transition.name.span);
+    if (fresh) continue;
     diagnostics.add(Code::kDuplicateName, transition.name.span,
-                    "the transition " + quoted(transition.name) + " is declared twice");
+                    "the transition " + declared_twice(sources, transition.name.text,
+                                                       transition.name.span, first->second));
   }
   return good;
 }
@@ -124,8 +129,9 @@ void report_play(const Net& net, const Play& play, base::Diagnostics& diagnostic
 
 }  // namespace
 
-void check(const Chart& chart, const Net& net, const Name& pou, base::Diagnostics& diagnostics) {
-  bool good = check_transitions(chart, net, diagnostics);
+void check(const Chart& chart, const Net& net, const Name& pou, const base::SourceMap& sources,
+           base::Diagnostics& diagnostics) {
+  bool good = check_transitions(chart, net, sources, diagnostics);
   good = check_initial(net, pou, diagnostics) && good;
   for (const Action& action : net.actions) {
     if (action.decl == nullptr || action.uses != 0) continue;

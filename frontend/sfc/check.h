@@ -9,6 +9,7 @@
 namespace frontend::sfc {
 
 // `pou` is the name of the POU whose body the chart is.
-void check(const Chart& chart, const Net& net, const Name& pou, base::Diagnostics& diagnostics);
+void check(const Chart& chart, const Net& net, const Name& pou, const base::SourceMap& sources,
+           base::Diagnostics& diagnostics);
 
 }  // namespace frontend::sfc

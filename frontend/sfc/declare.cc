@@ -69,12 +69,12 @@ bool damaged(const PouDecl& pou, const base::Diagnostics& diagnostics) {
 
 }  // namespace
 
-void declare_charts(Tree& tree, base::Diagnostics& diagnostics) {
+void declare_charts(Tree& tree, const base::SourceMap& sources, base::Diagnostics& diagnostics) {
   for (PouDecl& pou : tree.pous) {
     if (pou.chart == kNoChart) continue;
     const Chart& chart = tree.charts[pou.chart];
     Net net = resolve(chart);
-    if (!damaged(pou, diagnostics)) check(chart, net, pou.name, diagnostics);
+    if (!damaged(pou, diagnostics)) check(chart, net, pou.name, sources, diagnostics);
     declare(tree, pou, chart, net);
   }
 }

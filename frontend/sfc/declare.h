@@ -20,6 +20,6 @@ inline constexpr const char* kClock = "sfc#clock";
 std::string clock_name(const PouDecl& pou);
 inline constexpr const char* kRecordSuffix = "#action";
 
-void declare_charts(Tree& tree, base::Diagnostics& diagnostics);
+void declare_charts(Tree& tree, const base::SourceMap& sources, base::Diagnostics& diagnostics);
 
 }  // namespace frontend::sfc

@@ -26,7 +26,7 @@ struct Proof {
   std::shared_ptr<const RegionMap> regions;  // borrows the image's types and layouts
   std::shared_ptr<const std::vector<uint32_t>> areas;
   CodeFactsOfAll code;
-  std::vector<OutputWriter> writers;
+  CallFacts calls;
   NamesOnDemand names;
 };
 

@@ -130,12 +130,12 @@ base::Result<std::shared_ptr<const Proof>> prove(std::shared_ptr<const base::Byt
   if (!code) return code.error();
   proof->code = std::move(code).value();
   if (likeness.calls(proof->code)) {
-    proof->writers = like->writers;
+    proof->calls = like->calls;
     return std::shared_ptr<const Proof>(std::move(proof));
   }
-  auto writers = verify_calls(context, proof->code);
-  if (!writers) return writers.error();
-  proof->writers = std::move(writers).value();
+  auto calls = verify_calls(context, proof->code);
+  if (!calls) return calls.error();
+  proof->calls = std::move(calls).value();
   return std::shared_ptr<const Proof>(std::move(proof));
 }
 
@@ -155,7 +155,7 @@ base::Result<VerifiedImage> verify(std::shared_ptr<const base::Bytes> encoded) {
   proofs().add(proof);
   VerifiedImage verified;
   verified.image_ = {proof, &proof->image};
-  verified.output_writers_ = {proof, &proof->writers};
+  verified.calls_ = {proof, &proof->calls};
   verified.names_ = {proof, &proof->names};
   verified.encoded_ = proof->encoded;
   verified.digest_ = digest(*proof->encoded);

@@ -22,7 +22,13 @@ struct OutputWriter {
   uint32_t task = 0;
 };
 
-class NameIndex;      // name_index.h
+// What the call graph says (V11, V14).
+struct CallFacts {
+  std::vector<OutputWriter> writers;
+  std::vector<bool> running;  // by POU: is it of a program of a task, or can one call it?
+};
+
+class NameIndex;  // name_index.h
 class NamesOnDemand;
 
 class VerifiedImage {
@@ -30,7 +36,8 @@ class VerifiedImage {
   const Image& image() const { return *image_; }
   const base::Digest& digest() const { return digest_; }
   const base::Bytes& encoded() const { return *encoded_; }
-  const std::vector<OutputWriter>& output_writers() const { return *output_writers_; }
+  const std::vector<OutputWriter>& output_writers() const { return calls_->writers; }
+  const std::vector<bool>& running_pous() const { return calls_->running; }
   // Made when it is asked for first, in time linear in the names.
   const NameIndex& names() const;
 
@@ -39,7 +46,7 @@ class VerifiedImage {
   VerifiedImage() = default;
   std::shared_ptr<const Image> image_;
   std::shared_ptr<const base::Bytes> encoded_;
-  std::shared_ptr<const std::vector<OutputWriter>> output_writers_;
+  std::shared_ptr<const CallFacts> calls_;
   std::shared_ptr<const NamesOnDemand> names_;
   base::Digest digest_{};
 };

@@ -25,10 +25,20 @@ class CallGraph {
     DynamicCalls(image_).add_nodes(image_, context.pou_of_type, nodes_);
   }
 
-  base::Result<std::vector<OutputWriter>> run() {
+  base::Result<CallFacts> run() {
     if (base::Status s = measure(); !s) return s.error();
     if (base::Status s = check_stack(); !s) return s.error();
-    return writers();
+    std::map<uint32_t, OutputWriter> writers;  // by the offset of the output
+    CallFacts facts;
+    facts.running.resize(code_.size());
+    for (uint32_t t = 0; t < image_.tasks.size(); ++t) {
+      const std::vector<uint32_t> pous = reachable(image_.tasks[t]);
+      for (const uint32_t pou : pous) facts.running[pou] = true;
+      if (image_.tasks[t].once) continue;  // it is over before others begin
+      if (base::Status s = add_writers(t, pous, writers); !s) return s.error();
+    }
+    for (const auto& [data, row] : writers) facts.writers.push_back(row);
+    return facts;
   }
 
  private:
@@ -73,26 +83,21 @@ class CallGraph {
     return base::Ok{};
   }
 
-  base::Result<std::vector<OutputWriter>> writers() const {
-    std::map<uint32_t, OutputWriter> writer;  // by the offset of the output
-    for (uint32_t t = 0; t < image_.tasks.size(); ++t) {
-      if (image_.tasks[t].once) continue;  // it is over before others begin
-      for (uint32_t pou : reachable(image_.tasks[t])) {
-        if (code_[pou] == nullptr) continue;
-        for (const Extent& output : code_[pou]->written_outputs) {
-          const auto [entry, added] =
-              writer.try_emplace(output.offset, OutputWriter{output.offset, output.size, t});
-          if (entry->second.task == t) continue;
-          return refuse(Refusal::kBadIoAccess,
-                        "the output at data offset " + std::to_string(output.offset) +
-                            " is written by task `" + image_.tasks[entry->second.task].name +
-                            "` and by task `" + image_.tasks[t].name + "`");
-        }
+  base::Status add_writers(uint32_t t, const std::vector<uint32_t>& pous,
+                           std::map<uint32_t, OutputWriter>& writers) const {
+    for (const uint32_t pou : pous) {
+      if (code_[pou] == nullptr) continue;
+      for (const Extent& output : code_[pou]->written_outputs) {
+        const auto [entry, added] =
+            writers.try_emplace(output.offset, OutputWriter{output.offset, output.size, t});
+        if (entry->second.task == t) continue;
+        return refuse(Refusal::kBadIoAccess,
+                      "the output at data offset " + std::to_string(output.offset) +
+                          " is written by task `" + image_.tasks[entry->second.task].name +
+                          "` and by task `" + image_.tasks[t].name + "`");
       }
     }
-    std::vector<OutputWriter> rows;
-    for (const auto& [data, row] : writer) rows.push_back(row);
-    return rows;
+    return base::Ok{};
   }
 
   std::vector<uint32_t> reachable(const ImageTask& task) const {
@@ -119,8 +124,7 @@ class CallGraph {
 
 }  // namespace
 
-base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,
-                                                     const CodeFactsOfAll& code) {
+base::Result<CallFacts> verify_calls(const Context& context, const CodeFactsOfAll& code) {
   return CallGraph(context, code).run();
 }
 

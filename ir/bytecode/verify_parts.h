@@ -89,7 +89,6 @@ base::Result<CodeFacts> verify_code(const Context& context, uint32_t pou,
 // --- verify_calls.cc: call graph, stack, output writers (V11, V14) --------------
 // By POU, shared by versions; null: a number without one.
 using CodeFactsOfAll = std::vector<std::shared_ptr<const CodeFacts>>;
-base::Result<std::vector<OutputWriter>> verify_calls(const Context& context,
-                                                     const CodeFactsOfAll& code);
+base::Result<CallFacts> verify_calls(const Context& context, const CodeFactsOfAll& code);
 
 }  // namespace ir::verification

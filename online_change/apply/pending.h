@@ -59,7 +59,8 @@ struct Change::Pending {
         charts(same && same_nets(old(), new_image.image()) ? Charts()
                                                            : Charts(old(), new_image.image())),
         lost(lost_places(package.forward, old(), new_image.image())),
-        left(vm::left_outputs(old(), new_image.image())) {}
+        left(vm::left_outputs({old(), old_image.running_pous()},
+                              {new_image.image(), new_image.running_pous()})) {}
   // After stage(): both are known.
   void count_work(const ir::Bools& bools) {
     if (keeps_all) {

@@ -16,6 +16,8 @@
 namespace online_change {
 namespace {
 
+const std::string kNoTaskNow = "none: it runs only where others call it";
+
 std::string from_to(const std::string& before, const std::string& after) {
   return before + " -> " + after;
 }
@@ -196,14 +198,17 @@ class SystemEdits {
     return nullptr;
   }
 
-  // Programs in both versions that another task runs, or in another order.
+  // Programs in both versions that another task runs, or none, or in another order.
   void programs() {
     const std::map<std::string, std::string> before = tasks_by_program(old_);
     const std::map<std::string, std::string> after = tasks_by_program(new_);
-    for (const auto& [path, task] : after) {
-      const auto found = before.find(path);
-      if (found == before.end() || ir::same_name(found->second, task)) continue;
-      add("program", path, "task " + from_to(found->second, task));
+    const std::map<std::string, std::string> were = program_names(old_);
+    for (const auto& [folded, name] : program_names(new_)) {
+      if (!were.contains(folded)) continue;
+      const std::string* const was = find(before, folded);
+      const std::string* const is = find(after, folded);
+      if (was == nullptr ? is == nullptr : is != nullptr && ir::same_name(*was, *is)) continue;
+      add("program", name, "task " + from_to(was ? *was : "none", is ? *is : kNoTaskNow));
     }
     for (const ir::ImageTask& task : new_.tasks) {
       const ir::ImageTask* twin = task_of(old_, task.name);
@@ -212,6 +217,18 @@ class SystemEdits {
       const std::string is = order(new_, task, before, task.name);
       if (was != is) add("task", task.name, "order " + from_to(was, is));
     }
+  }
+  static const std::string* find(const std::map<std::string, std::string>& in,
+                                 const std::string& key) {
+    const auto found = in.find(key);
+    return found == in.end() ? nullptr : &found->second;
+  }
+  static std::map<std::string, std::string> program_names(const ir::Image& image) {
+    std::map<std::string, std::string> out;
+    for (const uint32_t id : image.program_ids()) {
+      out.emplace(ir::fold_name(image.instances[id].name), image.instances[id].name);
+    }
+    return out;
   }
   static std::map<std::string, std::string> tasks_by_program(const ir::Image& image) {
     std::map<std::string, std::string> out;

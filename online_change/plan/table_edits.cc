@@ -50,6 +50,8 @@ class TableRows {
  public:
   TableRows(const ir::Image& image, TableSide side) : image_(image), content_(image.types) {
     for (const ir::Member& member : image.types[image.globals].members) {
+      // By it others reach the variables of the program, which are rows of their own.
+      if (image.types[member.type].kind == ir::Kind::kProgram) continue;
       ir::is_shared(image.types, member) ? add_shared(member) : void(add(member, ""));
     }
     if (side == TableSide::kBefore) {

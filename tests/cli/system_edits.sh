@@ -8,8 +8,10 @@ VAR_GLOBAL out1 AT %QX0.0 : BOOL; out2 AT %QX0.1 : BOOL; in1 AT %IX0.0 : BOOL; p
 VAR_GLOBAL CONSTANT k : INT := 3; END_VAR
 PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
 PROGRAM Q r := r + 1; END_PROGRAM
+PROGRAM S VAR n : INT; END_VAR n := q4.n; END_PROGRAM
+PROGRAM q4 VAR n : INT; END_VAR n := n + 1; END_PROGRAM
 CONFIGURATION C RESOURCE R ON PLC TASK A(INTERVAL := T#10ms, PRIORITY := 1); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK G(INTERVAL := T#40ms, PRIORITY := 3);
-PROGRAM p1 WITH A : P; PROGRAM q1 WITH A : Q; PROGRAM q2 WITH B : Q; PROGRAM q3 WITH G : Q;
+PROGRAM p1 WITH A : P; PROGRAM q1 WITH A : Q; PROGRAM q2 WITH B : Q; PROGRAM q3 WITH G : Q; PROGRAM s WITH G : S; PROGRAM q4 WITH G : q4;
 END_RESOURCE END_CONFIGURATION
 ST
 cat >v2/a.st <<'ST'
@@ -18,8 +20,10 @@ VAR_GLOBAL RETAIN r : INT; END_VAR
 VAR_GLOBAL k : INT := 3; END_VAR
 PROGRAM P out1 := in1; out2 := TRUE; plain := plain + k; END_PROGRAM
 PROGRAM Q r := r + 1; END_PROGRAM
+PROGRAM S VAR n : INT; END_VAR n := q4.n; END_PROGRAM
+PROGRAM q4 VAR n : INT; END_VAR n := n + 1; END_PROGRAM
 CONFIGURATION C {attribute 'schedule' := 'run_first'} RESOURCE R ON PLC {attribute 'watchdog' := 'T#5ms'} {attribute 'overrun' := 'stretch'} {attribute 'output_buffer' := 'three'} {attribute 'exchange' := 'own'} TASK A(INTERVAL := T#5ms, PRIORITY := 3); TASK B(INTERVAL := T#20ms, PRIORITY := 2); TASK D(INTERVAL := T#80ms, PRIORITY := 5);
-PROGRAM q1 WITH A : Q; PROGRAM p1 WITH A : P; PROGRAM q2 WITH D : Q; PROGRAM q3 WITH B : Q;
+PROGRAM q1 WITH A : Q; PROGRAM p1 WITH A : P; PROGRAM q2 WITH D : Q; PROGRAM q3 WITH B : Q; PROGRAM s WITH B : S;
 END_RESOURCE END_CONFIGURATION
 ST
 cat >v1/chart.st <<'ST'
@@ -60,6 +64,8 @@ task D (new, T#80ms, priority 5)
 task G (removed)
 program q2 (task B -> D)
 program q3 (task G -> B)
+program s (task G -> B)
+program q4 (task G -> none: it runs only where others call it)
 task A (order p1, q1 -> q1, p1)
 output %QX0.1 (safe value held -> 0)
 output %QX7.7 (safe value 0 -> 1)

@@ -109,8 +109,8 @@ void compare_texts(const ir::VerifiedImage& from, const ir::VerifiedImage& to,
     base::check(!edit.type.empty(), "a type has a name");
   }
   answered(check_restricted(edits));
-  auto system = tools::all_system_edits(from.image(), to.image());
-  tools::all_system_edits(from.image(), to.image(), true);
+  auto system = tools::all_system_edits(from, to);
+  tools::all_system_edits(from, to, true);
   for (auto& edit : tools::source_edits(from.encoded(), to.encoded())) {
     system.push_back(std::move(edit));
   }

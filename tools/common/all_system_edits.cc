@@ -25,12 +25,16 @@ void add_unit_edits(const ir::Image& old_image, const ir::Image& new_image, Syst
 
 }  // namespace
 
-SystemEdits all_system_edits(const ir::Image& old_image, const ir::Image& new_image, bool back) {
+SystemEdits all_system_edits(const ir::VerifiedImage& old_version,
+                             const ir::VerifiedImage& new_version, bool back) {
+  const ir::Image& old_image = old_version.image();
+  const ir::Image& new_image = new_version.image();
   const ir::OldUnderNewNames names(back ? new_image : old_image, back ? old_image : new_image);
   const ir::Image& before = back ? old_image : names.image();
   const ir::Image& after = back ? names.image() : new_image;
   SystemEdits edits = online_change::system_edits(before, after);
-  for (const vm::LeftOutput& output : vm::left_outputs(before, after)) {
+  for (const vm::LeftOutput& output : vm::left_outputs({before, old_version.running_pous()},
+                                                       {after, new_version.running_pous()})) {
     edits.push_back({"output", ir::address_text(output.address),
                      "`" + output.path + "` is no longer written by any code"});
   }

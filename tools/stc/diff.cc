@@ -56,7 +56,11 @@ base::Result<Difference> compare_projects(const tools::Options& options) {
     out.words = differences(*was, *is);
   }
   out.edits = online_change::pou_edits(before->image, after->image);
-  out.system = tools::all_system_edits(before->image, after->image);
+  const auto was = ir::verify(before->bytes);
+  if (!was.ok()) return was.error();
+  const auto is = ir::verify(after->bytes);
+  if (!is.ok()) return is.error();
+  out.system = tools::all_system_edits(*was, *is);
   for (auto& edit : tools::source_edits(before->bytes, after->bytes)) {
     out.system.push_back(std::move(edit));
   }

@@ -39,7 +39,7 @@ tools::SystemEdits shown_system(const vm::Controller& controller,
   const ir::VerifiedImage& old_image = controller.verified();
   tools::SystemEdits edits =
       force_edits(old_image.image(), controller.forces(), new_image.image(), next_forces);
-  for (auto& edit : tools::all_system_edits(old_image.image(), new_image.image(), back)) {
+  for (auto& edit : tools::all_system_edits(old_image, new_image, back)) {
     edits.push_back(std::move(edit));
   }
   for (auto& edit : tools::source_edits(old_image.encoded(), new_image.encoded())) {

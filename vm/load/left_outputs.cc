@@ -53,9 +53,9 @@ std::vector<Variable> variables_of(const std::vector<Output>& outputs) {
   return variables;
 }
 
-std::vector<Output> outputs_of(const ir::Image& image) {
-  std::vector<Output> out = located_outputs(image);
-  for (const Writer& writer : find_writers(image, variables_of(out))) {
+std::vector<Output> outputs_of(const RunningCode& code) {
+  std::vector<Output> out = located_outputs(code.image);
+  for (const Writer& writer : find_writers(code.image, variables_of(out), &code.pous)) {
     out[writer.variable].written = true;
   }
   return out;
@@ -63,7 +63,10 @@ std::vector<Output> outputs_of(const ir::Image& image) {
 
 // Who writes an output is decided by what code does, all of it together: the more, the more
 // writers. So nobody is missed where the POUs that are others do what they did, and more.
-bool all_stay_written(const ir::Image& old_image, const ir::Image& new_image) {
+bool all_stay_written(const RunningCode& before, const RunningCode& after) {
+  const ir::Image& old_image = before.image;
+  const ir::Image& new_image = after.image;
+  if (before.pous != after.pous) return false;
   if (!have_same_places(old_image, new_image) || old_image.io != new_image.io) return false;
   std::vector<uint32_t> others;
   for (uint32_t pou = 0; pou < new_image.pous.size(); ++pou) {
@@ -100,26 +103,27 @@ class Bits {
 
 }  // namespace
 
-std::vector<LeftOutput> left_outputs(const ir::Image& old_image, const ir::Image& new_image) {
+std::vector<LeftOutput> left_outputs(const RunningCode& before, const RunningCode& after) {
+  const ir::Image& new_image = after.image;
   std::vector<LeftOutput> left;
   const bool any = std::any_of(new_image.io.begin(), new_image.io.end(), [](const auto& row) {
     return row.address.area == ir::DirectArea::kOutput;
   });
-  if (!any || all_stay_written(old_image, new_image)) return left;
+  if (!any || all_stay_written(before, after)) return left;
   Bits bound;
   Bits written;
-  for (const Output& output : outputs_of(new_image)) {
+  for (const Output& output : outputs_of(after)) {
     bound.add(output.begin, output.end);
     if (output.written) written.add(output.begin, output.end);
   }
-  for (const Output& output : outputs_of(old_image)) {
+  for (const Output& output : outputs_of(before)) {
     if (!output.written || !bound.touches(output.begin, output.end)) continue;
     if (written.touches(output.begin, output.end)) continue;
     LeftOutput row;
     row.address = output.address;
     row.symbol.data = output.variable.data;
     row.symbol.type = output.variable.type;
-    row.path = ir::path_of(old_image, row.symbol);
+    row.path = ir::path_of(before.image, row.symbol);
     left.push_back(std::move(row));
   }
   return left;

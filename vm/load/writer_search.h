@@ -31,7 +31,7 @@ class WriterSearch {
 
  public:
   WriterSearch(const ir::Image& image, std::span<const Variable> variables);
-  std::vector<Writer> run();
+  std::vector<Writer> run(const std::vector<bool>* running);
   WriteEffects effects(std::span<const uint32_t> pous);
 
  private:

@@ -78,8 +78,14 @@ void WriterSearch::find_by_address(uint32_t target) {
   }
 }
 
-std::vector<Writer> WriterSearch::run() {
+std::vector<Writer> WriterSearch::run(const std::vector<bool>* running) {
   for (uint32_t pou = 0; pou < image_.pous.size(); ++pou) look_at(pou);
+  if (running != nullptr) {
+    std::erase_if(found_, [&](const Writer& writer) { return !(*running)[writer.pou]; });
+    std::erase_if(unknown_, [&](const AddressUse& unknown) {
+      return unknown.use == AddressUse::Use::kStored && !(*running)[unknown.pou];
+    });
+  }
   for (uint32_t i = 0; i < targets_.size(); ++i) find_by_address(i);
   std::stable_sort(found_.begin(), found_.end(), [](const Writer& a, const Writer& b) {
     return std::tie(a.variable, a.pou, a.unit) < std::tie(b.variable, b.pou, b.unit);
@@ -118,8 +124,9 @@ WriteEffects write_effects(const ir::Image& image, std::span<const Variable> var
   return WriterSearch(image, variables).effects(pous);
 }
 
-std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables) {
-  return WriterSearch(image, variables).run();
+std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables,
+                                 const std::vector<bool>* running) {
+  return WriterSearch(image, variables).run(running);
 }
 
 }  // namespace vm

@@ -31,7 +31,9 @@ struct Writer {
 // Writers with kAddress are named in so many POUs.
 inline constexpr size_t kMostAddressPous = 100;
 // Sorted by variable, POU and unit.
-std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables);
+// `running`: those POUs alone write, by number; others may have given addresses before. Null: all.
+std::vector<Writer> find_writers(const ir::Image& image, std::span<const Variable> variables,
+                                 const std::vector<bool>* running = nullptr);
 
 // What code of some POUs does that decides who writes the variables.
 struct WriteEffects {

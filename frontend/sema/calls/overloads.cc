@@ -1,7 +1,7 @@
 // Functions that share a name: the one is called whose parameters fit the arguments best.
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sema/calls/calls.h"
 #include "frontend/sema/calls/open_functions.h"
-#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/sema.h"
 
 namespace frontend {

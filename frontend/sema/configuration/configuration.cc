@@ -2,12 +2,12 @@
 #include <algorithm>
 
 #include "base/limits.h"
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sema/configuration/configuration.h"
 #include "frontend/sema/configuration/instance_paths.h"
 #include "frontend/sema/configuration/task_attributes.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/declarations/collection.h"
-#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/interfaces.h"
 #include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/declarations/rename_rules.h"

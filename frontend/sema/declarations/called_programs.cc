@@ -50,6 +50,19 @@ VarId Variables::program_variable(std::string_view name, bool called) {
   return id;
 }
 
+void Interfaces::warn_never_runs(const PouInfo& info) {
+  const std::string name(info.decl->name.text);
+  std::string text = "program `" + name + "` is in no task, and nobody calls it: it never runs";
+  std::string help = "PROGRAM " + name + " WITH task : " + name + "; or " + name + "();";
+  for (const ir::ProgramInstance& other : sema_.program.instances) {
+    if (other.type != info.self) continue;
+    text += "; `" + other.name + "` is an instance with variables of its own";
+    help = "PROGRAM " + name + " in place of PROGRAM " + other.name;
+    break;
+  }
+  warning(DiagnosticCode::kNeverRuns, info.decl->name.span, std::move(text), std::move(help));
+}
+
 // After all bodies. What is called does not run by itself, unless a CONFIGURATION says so.
 void Interfaces::finish_programs() {
   if (sema_.for_tests()) return free_inputs(sema_.program.types);  // programs are blocks then
@@ -60,6 +73,7 @@ void Interfaces::finish_programs() {
       if (ir::same_name(other.name, info.decl->name.text)) instance = &other;
     }
     if (instance == nullptr) {
+      if (!info.called) warn_never_runs(info);
       sema_.program.instances.push_back({std::string(info.decl->name.text),
                                          info.self,
                                          ir::kNoTask,

@@ -1,8 +1,8 @@
 // First pass: every name that a declaration brings into the world, nothing resolved.
 #include "frontend/sema/declarations/collection.h"
+#include "frontend/parse/declared_twice.h"
 #include "frontend/parse/global_lists.h"
 #include "frontend/sema/configuration/configuration.h"
-#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/interfaces.h"
 #include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/declarations/rename_rules.h"

@@ -20,6 +20,7 @@ class Interfaces : public Phase {
 
  private:
   void resolve_globals();
+  void warn_never_runs(const PouInfo& info);
 };
 
 }  // namespace frontend

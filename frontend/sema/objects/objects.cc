@@ -2,7 +2,7 @@
 #include "frontend/sema/objects/objects.h"
 #include "frontend/sema/declarations/collection.h"
 
-#include "frontend/sema/declarations/declared_twice.h"
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sema/declarations/rename_rules.h"
 #include "frontend/sema/quoted.h"
 #include "frontend/sema/sema.h"

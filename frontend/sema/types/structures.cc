@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sema/constants/constants.h"
-#include "frontend/sema/declarations/declared_twice.h"
 #include "frontend/sema/declarations/old_names.h"
 #include "frontend/sema/declarations/rename_rules.h"
 #include "frontend/sema/declarations/variables.h"

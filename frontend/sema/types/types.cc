@@ -3,6 +3,7 @@
 #include "frontend/sema/types/types.h"
 #include "base/limits.h"
 #include "frontend/lex/library_index.h"
+#include "frontend/parse/declared_twice.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/declarations/collection.h"
 #include "frontend/sema/declarations/old_names.h"
@@ -276,7 +277,9 @@ TypeUse Types::resolve_enum(SpecId id, const Spec& spec) {
     std::string name(enumerator.name.text);
     const auto number = static_cast<uint32_t>(type.literals.size());
     if (!numbers.emplace(enumerator.name.text, number).second) {
-      error(DiagnosticCode::kDuplicateName, enumerator.name.span, "`" + name + "` stands twice");
+      const Name& first = spec.enumerators[numbers.find(enumerator.name.text)->second].name;
+      error(DiagnosticCode::kDuplicateName, enumerator.name.span,
+            declared_twice(sema_.sources, name, enumerator.name.span, first.span));
       return {};
     }
     if (enumerator.value.valid()) {

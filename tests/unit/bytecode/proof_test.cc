@@ -41,8 +41,8 @@ void expect_same(const Proven& alone, const Proven& helped) {
   const Proof& b = **helped;
   EXPECT_EQ(encode(b.image), encode(a.image));
   EXPECT_TRUE(std::equal(a.code.begin(), a.code.end(), b.code.begin(), b.code.end(), same_facts));
-  EXPECT_TRUE(std::equal(a.writers.begin(), a.writers.end(), b.writers.begin(), b.writers.end(),
-                         same_writer));
+  EXPECT_TRUE(std::ranges::equal(a.calls.writers, b.calls.writers, same_writer));
+  EXPECT_EQ(a.calls.running, b.calls.running);
   EXPECT_TRUE(std::equal(a.types->begin(), a.types->end(), b.types->begin(), b.types->end(),
                          [](const TypeFacts& x, const TypeFacts& y) {
                            return x.has_slots == y.has_slots && x.depth == y.depth;

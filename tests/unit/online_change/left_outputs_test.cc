@@ -52,8 +52,10 @@ std::string left(const std::string& before, const std::string& after) {
   // Tables of their own, so nothing is known to be the same.
   const ir::Image apart = *ir::decode(package->image);
   EXPECT_FALSE(vm::have_same_places(old_image, apart));
-  const std::string few = names(vm::left_outputs(old_image, next->image()));
-  return few == names(vm::left_outputs(old_image, apart)) ? few : "differ";
+  const vm::RunningCode running{old_image, plant.controller().verified().running_pous()};
+  const std::string few = names(vm::left_outputs(running, {next->image(), next->running_pous()}));
+  const std::string all = names(vm::left_outputs(running, {apart, next->running_pous()}));
+  return few == all ? few : "differ";
 }
 
 TEST(LeftOutputs, case67_an_edit_that_writes_what_it_wrote_leaves_none) {

@@ -111,6 +111,17 @@ TEST(TableEdits, E16_VariablesOfProgramsAreInTheTable) {
   EXPECT_EQ(between(program(""), two), "");
 }
 
+TEST(TableEdits, E16_AProgramThatOthersReadIsNoVariable) {
+  const std::string watch = "PROGRAM Watch VAR seen : INT; END_VAR seen := Main.n; END_PROGRAM\n";
+  const std::string read = program("a : INT;") + watch;
+  EXPECT_EQ(between(read, read), "");
+  EXPECT_EQ(between(read, program("a : INT;", "more : INT;") + watch), "");
+  EXPECT_EQ(between(program("a : INT;"), read), "");
+  EXPECT_EQ(between(read, program("a : INT;", "more : REAL;")), "removed Watch: removed, with its "
+                                                                "variables\n");
+  EXPECT_EQ(between(read, program("a : INT;") + watch, TableSide::kOwn), "");
+}
+
 TEST(TableEdits, E16_AddressesOfVarConfigAreInTheTable) {
   const auto at = [](const char* address) {
     return std::string(

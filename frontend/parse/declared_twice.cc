@@ -1,4 +1,4 @@
-#include "frontend/sema/declarations/declared_twice.h"
+#include "frontend/parse/declared_twice.h"
 
 namespace frontend {
 
