@@ -70,14 +70,6 @@ bool References::is_distance(ExprId id) {
   return is_distance(expr.operand);
 }
 
-// Of what is no pointer or reference: interfaces, and numbers of codesys and twincat.
-bool Values::takes_null(ir::TypeId target) const {
-  const Traits traits = traits_of(types(), target);
-  const bool number =
-      (traits.integer || traits.bits) && ir::scalar_size(types().scalar(target)) >= 4;
-  return is_interface(types(), target) || (number && sema_.options.dialect != Dialect::kIec);
-}
-
 ir::ValueId Values::value(ExprId id, ir::TypeId target) {
   const Note& note = infer(id);
   const Expr& expr = tree_[id];
@@ -88,12 +80,6 @@ ir::ValueId Values::value(ExprId id, ir::TypeId target) {
     return ask<References>().constant_reference(id);
   if (is_interface(types(), target) && types().is_instance(note.type)) {
     return ask<References>().interface_value(id, target);
-  }
-  if (note.constant && note.flex == Flex::kNull && !takes_null(target)) {
-    error(DiagnosticCode::kTypeMismatch, expr.span,
-          "NULL does not go with `" + sema_.report.type_text(target) + "`",
-          "it is for pointers, references and interfaces");
-    return code_.zero(target);
   }
   if (is_known(note)) {
     auto bits = ask<Constants>().fold_bits(id, target,

@@ -15,7 +15,6 @@ class Values : public BodyPhase {
   Typed natural(ExprId expr);  // in its own type; literals take their default type
   ir::ValueId condition(ExprId expr);
   ir::ValueId emit(ExprId expr, ir::TypeId own);
-  bool takes_null(ir::TypeId target) const;
   ir::ValueId loaded(ExprId expr);  // what stands at its place
   ir::ValueId computed_in(ExprId id, ir::TypeId type);
   ir::TypeId own_type(const Note& note, ir::TypeId target) const;

@@ -93,7 +93,8 @@ Note StandardCalls::infer_standard(const Expr& expr, const Callee& callee) {
     if (!note.type.valid()) return {};
     all.calls = all.calls || note.calls;
     all.can_trap = all.can_trap || note.can_trap;
-    all.known = std::min(all.known, note.known);
+    const bool address = sema_.program.types.is_reference(note.type);  // known at run time only
+    all.known = address ? Known::kNo : std::min(all.known, note.known);
   }
   if (!ask<Calls>().takes_typed(callee, args) || takes_power(*this, expr, row, args)) return {};
   Note note = infer_rule(expr, row, args);

@@ -21,6 +21,8 @@ class Constants : public Phase {
   std::optional<Constant> fold(ExprId expr, ir::TypeId context, Known least = Known::kByCall);
   std::optional<uint64_t> fold_bits(ExprId expr, ir::TypeId target, Known least = Known::kByCall);
   std::optional<int64_t> fold_integer(ExprId expr);
+  // Of what is no pointer or reference: interfaces, and numbers of codesys and twincat.
+  bool takes_null(ir::TypeId target) const;
   // Bits of a constant as a value of scalar type `target`; reports what does not fit.
   std::optional<uint64_t> fit(const Constant& value, ir::TypeId target, base::SourceSpan span);
   std::optional<std::string> fit_text(const Constant& value, ir::TypeId target,

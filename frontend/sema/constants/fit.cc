@@ -24,6 +24,7 @@ std::string literal_text(const Constant& value, bool wide) {
 }
 
 std::string value_text(const Constant& value, const ir::TypeTable& types) {
+  if (value.flex == Flex::kNull) return "NULL";
   if (value.form == Constant::Form::kReal) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value.real);
@@ -53,6 +54,13 @@ std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
           what + " does not go with `" + sema_.report.type_text(target) + "`");
     return std::nullopt;
   };
+  if (value.flex == Flex::kNull) {
+    if (types.is_reference(target) || takes_null(target)) return 0;
+    error(DiagnosticCode::kTypeMismatch, span,
+          "NULL does not go with `" + sema_.report.type_text(target) + "`",
+          "it is for pointers, references and interfaces");
+    return std::nullopt;
+  }
   if (!types.is_scalar(target)) return mismatch();
   ir::Scalar scalar = types.scalar(target);
   if (value.form == Constant::Form::kText) {
@@ -106,6 +114,13 @@ std::optional<uint64_t> Constants::fit(const Constant& value, ir::TypeId target,
         wide_text(integer) + " does not fit into `" + sema_.report.type_text(target) + "`",
         "it holds " + wide_text(limits.low) + ".." + wide_text(limits.high));
   return std::nullopt;
+}
+
+bool Constants::takes_null(ir::TypeId target) const {
+  const ir::TypeTable& types = sema_.program.types;
+  const Traits traits = traits_of(types, target);
+  const bool number = (traits.integer || traits.bits) && ir::scalar_size(types.scalar(target)) >= 4;
+  return is_interface(types, target) || (number && sema_.options.dialect != Dialect::kIec);
 }
 
 bool Constants::fits(const Constant& value, ir::TypeId target) const {

@@ -13,6 +13,17 @@
 #include "ir/types/natural_layout.h"
 
 namespace frontend {
+namespace {
+
+Constant null_of(ir::TypeId type) {
+  Constant value;
+  value.flex = Flex::kNull;
+  value.type = type;
+  return value;
+}
+
+}  // namespace
+
 std::optional<Constant> Folder::fold(ExprId id) {
   const Expr& expr = sema_.tree[id];
   const Note& note = infer(id);
@@ -175,6 +186,7 @@ std::optional<Constant> Folder::name(ExprId id, const Expr& expr) {
   const Note& note = infer(id);
   if (!note.variable.valid()) {
     ir::TypeId type = note.type;
+    if (note.flex == Flex::kNull) return null_of(type);
     if (const auto* earlier = sema_.declared.forming_literal(expr.name.text, &type)) {
       Constant value;
       value.flex = Flex::kInteger;
