@@ -64,11 +64,13 @@ void Writer::interface(Node owner, const Pou& pou, const char* kind) {
   }
   put_attributes(node, pou.attributes);
   // OVERRIDE and PUBLIC have no element either.
-  const bool said = whole && !pou.is_override && pou.access != frontend::Access::kPublic;
+  const bool all_said = in_.kept == nullptr || !in_.kept->has_declarations;
+  const bool said =
+      all_said && whole && !pou.is_override && pou.access != frontend::Access::kPublic;
   if (said || is_property(pou.kind)) return;
   // Sections that no element has: the text goes first when this is read.
   std::string head = attribute_text(pou.attributes);
-  head += pieces(pou.span, head_end(pou)).head;
+  head += undented(blanks_before(pou.span) + pieces(pou.span, head_end(pou)).head);
   if (*kind != 0) put_declaration(owner, head);
 }
 

@@ -213,9 +213,8 @@ std::string Writer::condition_of(const frontend::ChartTransition& transition, bo
   return {};
 }
 
-void Writer::put_text(Node parent, const char* language, const std::string& text) const {
-  // Lines keep their distances from each other.
-  std::string_view all = text;
+// Without what all lines have in front: they keep their distances from each other.
+std::string Writer::undented(std::string_view all) {
   while (!all.empty() && xml::trimmed(all.substr(0, all.find('\n'))).empty() &&
          all.find('\n') != std::string_view::npos) {
     all.remove_prefix(all.find('\n') + 1);
@@ -235,7 +234,23 @@ void Writer::put_text(Node parent, const char* language, const std::string& text
     line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
     out += std::string(line.substr(std::min(least, line.size()))) + (rest.empty() ? "" : "\n");
   }
+  return out;
+}
+
+void Writer::put_text(Node parent, const char* language, const std::string& text) const {
+  const std::string out = undented(text);
   put_formatted(parent.append_child(language), out.empty() ? " " : out);  // no text is none to them
+}
+
+std::string Writer::blanks_before(base::SourceSpan span) const {
+  const uint32_t file = in_.sources.file_of(span.begin);
+  if (file == in_.sources.file_count()) return {};
+  const std::string_view text = text_of(file);
+  size_t blanks = 0;
+  for (size_t at = span.begin.offset - in_.sources.begin(file).offset; at > 0; --at, ++blanks) {
+    if (text[at - 1] != ' ' && text[at - 1] != '\t') break;
+  }
+  return std::string(blanks, ' ');
 }
 
 // Beremiz and OpenPLC Editor look for a <p> in <xhtml:p>, of which no blank is lost as it is CDATA;

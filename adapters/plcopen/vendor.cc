@@ -152,6 +152,7 @@ Vendor vendor_data(Node owner, Reporter& report) {
       out.attributes += attribute_lines(data);
     } else if (is_vendor(data, "interfaceasplaintext")) {
       out.declaration = declaration_of(data);
+      report.out().kept.has_declarations = true;
     } else if (is_vendor(data, "mixedattrsvarlist")) {
       out.mixed = xml::child(data, "MixedAttrsVarList");
     } else if (is_vendor(data, "accessmodifiers")) {

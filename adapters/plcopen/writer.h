@@ -62,6 +62,8 @@ class Writer {
   Pieces pieces(base::SourceSpan span, base::SourcePos head_end) const;
   base::SourcePos head_end(const Pou& pou) const;
   std::string condition_of(const frontend::ChartTransition& transition, bool& list) const;
+  static std::string undented(std::string_view text);
+  std::string blanks_before(base::SourceSpan span) const;  // in its line
   void put_text(Node parent, const char* language, const std::string& text) const;
   void put_formatted(Node owner, const std::string& text) const;
   void put_documentation(Node owner, const std::string& text) const;

@@ -66,7 +66,8 @@ struct Kept {
   std::map<std::string, std::vector<std::string>> data;
   std::map<std::string, std::vector<std::string>> editor_data;
   std::map<std::string, std::string> object_ids;  // attributes ObjectId, likewise
-  bool declares_xhtml = false;  // texts stand in <xhtml xmlns=...>, as CODESYS writes them
+  bool declares_xhtml = false;    // texts stand in <xhtml xmlns=...>, as CODESYS writes them
+  bool has_declarations = false;  // as text beside their elements, likewise
 };
 
 // Names that are taken, in any case of letters.

@@ -109,7 +109,7 @@ again() {  # again NAME DIFFERENT_FILES
 again declarations 0
 again ladder 0
 again blocks 0
-again objects 1 # a declaration that was text is elements now
+again objects 0
 again chart 0
 expect 0 stc build blocks.new.xml -o blocks.img
 expect 0 stvm run blocks.img --scans 6 --virtual-time --print M.total --print M.seen --print M.pulses --print M.c

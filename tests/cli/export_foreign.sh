@@ -80,4 +80,46 @@ grep -q 'productName="stc"' own.xml || fail "a header of its own"
 sed 's/productVersion="[^"]*"/productVersion="0.0.1"/' own.xml >older.xml
 expect 0 stc export older.xml -o own.xml
 grep -q 'productVersion="0.0.1"' own.xml && fail "a header of an older stc was kept"
+
+# Declarations as text, and texts in <xhtml>, go out where they came in.
+cat >texts.xml <<'X'
+<?xml version="1.0" encoding="utf-8"?>
+<project xmlns="http://www.plcopen.org/xml/tc6_0200">
+  <fileHeader companyName="" productName="CODESYS" productVersion="CODESYS V3.5" creationDateTime="2021-03-04T10:11:12" />
+  <contentHeader name="texts"><coordinateInfo><fbd><scaling x="1" y="1" /></fbd><ld><scaling x="1" y="1" /></ld><sfc><scaling x="1" y="1" /></sfc></coordinateInfo></contentHeader>
+  <types><dataTypes /><pous><pou name="Count" pouType="functionBlock">
+    <interface><localVars><variable name="n"><type><INT /></type></variable></localVars></interface>
+    <body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">n := n + 1;</xhtml></ST></body>
+    <addData>
+      <data name="http://www.3s-software.com/plcopenxml/interfaceasplaintext" handleUnknown="implementation"><InterfaceAsPlainText><xhtml xmlns="http://www.w3.org/1999/xhtml">FUNCTION_BLOCK Count
+VAR
+	n : INT; // pieces &amp; more
+END_VAR
+</xhtml></InterfaceAsPlainText></data>
+      <data name="http://www.3s-software.com/plcopenxml/method" handleUnknown="implementation"><Method name="Clear"><interface /><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">n := 0;</xhtml></ST></body>
+        <addData><data name="http://www.3s-software.com/plcopenxml/interfaceasplaintext" handleUnknown="implementation"><InterfaceAsPlainText><xhtml xmlns="http://www.w3.org/1999/xhtml">METHOD Clear</xhtml></InterfaceAsPlainText></data></addData></Method></data>
+    </addData>
+  </pou></pous></types>
+  <instances><configurations /></instances>
+</project>
+X
+expect 0 stc export texts.xml -o back.xml
+cat >texts.py <<'P'
+import sys
+import xml.etree.ElementTree as tree
+
+def said(path):
+    root = tree.parse(path).getroot()
+    name = lambda node: node.tag.rpartition("}")[2]
+    texts = [" ".join("".join(each.itertext()).split()) for each in root.iter() if name(each) == "InterfaceAsPlainText"]
+    bodies = [[name(each) for each in node] for node in root.iter() if name(node) == "ST"]
+    return texts, bodies
+
+first, second = said("texts.xml"), said(sys.argv[1])
+assert first == second, second
+P
+python3 texts.py back.xml || fail "texts of declarations"
+expect 0 stc export back.xml -o again.xml
+python3 texts.py again.xml || fail "texts of declarations, the second time"
+cmp -s back.xml again.xml || fail "not the same the second time"
 exit 0

@@ -162,6 +162,8 @@ void Importer::take(const std::string& origin, xml::Imported& out) {
   kept.object_ids.merge(out.kept.object_ids);
   kept.headers.insert(kept.headers.end(), out.kept.headers.begin(), out.kept.headers.end());
   kept.charts.merge(out.kept.charts);
+  kept.declares_xhtml = kept.declares_xhtml || out.kept.declares_xhtml;
+  kept.has_declarations = kept.has_declarations || out.kept.has_declarations;
   // A name is taken in all documents that are imported together.
   xml::Names names = std::move(out.names);
   out = {};
