@@ -9,7 +9,9 @@ namespace frontend {
 // A pointer and by how many bytes it is to be moved.
 struct MovedPointer {
   ir::ValueId handle;
-  ir::ValueId bytes;  // i64; invalid: none
+  ir::ValueId bytes;             // i64; invalid: none
+  ir::ValueId has_address;       // BOOL: one of the numbers was an address; invalid: none can be
+  bool unsigned_number = false;  // a variable of 32 bits was subtracted, as if it were an address
 };
 
 // What a handle is compared by: the byte that it names. A pointer that arithmetic moved to one past

@@ -89,6 +89,10 @@ ir::ValueId Values::emit_comparison(BinaryOp op, ExprId left, ExprId right) {
   const ir::TypeId narrow = compared_type(*this, common.type, {left, right});
   common.type = compared_with_literals(*this, narrow, {left, right});
   if (common.type != narrow) warn_of_decided(*this, op, left, right, narrow);
+  const ir::TypeId behind = ask<References>().compared_distance(left, right);
+  const ir::TypeId distance =
+      behind.valid() ? behind : ask<References>().compared_distance(right, left);
+  if (distance.valid()) common.type = distance;
   ir::ValueId a = value(left, common.type);
   ir::ValueId b = value(right, common.type);
   const bool equality = op == BinaryOp::kEq || op == BinaryOp::kNe;

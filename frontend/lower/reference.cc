@@ -193,44 +193,16 @@ ir::ValueId References::emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId
       return build_.unary(ir::Op::kWrap, scalar(own),
                           build_.binary(ir::Op::kSub, ir::Scalar::kU32, a, b));
     }
-    const ir::ValueId a = value(left, dword);
-    return code_.number_op(op, dword, a, value(right, dword));
+    const auto flat = [&](ExprId side) {
+      const Note& note = infer(side);
+      const bool whole = types().is_reference(note.type) || note.constant;
+      return whole ? value(side, dword) : flat_number(natural(side));
+    };
+    const ir::ValueId a = flat(left);
+    return code_.number_op(op, dword, a, flat(right));
   }
   const MovedPointer sum = moved_pointer(op, left, right);
   return build_.move_handle(sum.handle, sum.bytes);
-}
-
-// A chain of sums moves its pointer once, by all that is added: ADR(a) + 4 * i - 4 may leave the
-// variable on its way.
-MovedPointer References::moved_pointer(BinaryOp op, ExprId left, ExprId right) {
-  const bool first = types().is_reference(infer(left).type);
-  MovedPointer sum;
-  Typed number;
-  if (first) sum = pointer_of_sum(left);
-  number = natural(first ? right : left);
-  if (!first) sum = pointer_of_sum(right);
-  const ir::Scalar i64 = ir::Scalar::kI64;
-  ir::Scalar from = scalar(number.type);
-  if (from == ir::Scalar::kU32) {  // which wraps inside of an address
-    from = ir::Scalar::kI32;
-    number.value = build_.unary(ir::Op::kWrap, from, number.value);
-  }
-  const ir::ValueId bytes = code_.machine_convert(number.value, from, i64);
-  if (sum.bytes.valid()) {
-    sum.bytes =
-        build_.binary(op == BinaryOp::kSub ? ir::Op::kSub : ir::Op::kAdd, i64, sum.bytes, bytes);
-  } else {
-    sum.bytes = op == BinaryOp::kSub ? build_.unary(ir::Op::kNeg, i64, bytes) : bytes;
-  }
-  return sum;
-}
-
-MovedPointer References::pointer_of_sum(ExprId id) {
-  const Expr& expr = tree_[id];
-  const bool sum = expr.kind == ExprKind::kBinary &&
-                   (expr.binary == BinaryOp::kAdd || expr.binary == BinaryOp::kSub);
-  if (!sum || infer(id).constant) return {natural(id).value, {}};
-  return moved_pointer(expr.binary, expr.operand, expr.right);
 }
 
 // Pointers to integers and back (ADR 0005): 64 bits hold the handle's place, 32 bits the flat

@@ -1,5 +1,5 @@
 // Phase: pointers, references and interfaces in bodies, by the shapes of "References" in
-// ir/program/ir.h (reference.cc), and assignments that depend on what an instance is
+// ir/program/ir.h (reference.cc, distance.cc), and assignments that depend on what an instance is
 // (type_test.cc).
 #pragma once
 
@@ -26,12 +26,18 @@ class References : public BodyPhase {
   // Warns of a number that goes into a pointer, but has too few bits for one.
   void check_address(ir::TypeId number, base::SourceSpan span);
   ir::ValueId convert_reference(Typed from, ir::TypeId to, base::SourceSpan span);
+  // distance.cc
   bool is_distance(ExprId id);
+  ir::ValueId distance(ExprId id, ir::TypeId target, base::SourceSpan span);
+  ir::TypeId compared_distance(ExprId distance, ExprId other);
+  bool is_of_two_pointers(ExprId id, ir::TypeId target);
   ir::ValueId emit_reference_call(const Expr& expr, ReferenceCall call, ir::TypeId own);
   ir::ValueId emit_pointer_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
   Attempt attempt(ExprId left, ExprId right, base::SourceSpan span);
 
  private:
+  ir::ValueId holds_address(ir::ValueId number);
+  ir::ValueId flat_number(Typed number);
   MovedPointer moved_pointer(BinaryOp op, ExprId left, ExprId right);
   MovedPointer pointer_of_sum(ExprId id);
   std::optional<ir::ValueId> object_handle(ExprId id);

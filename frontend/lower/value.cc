@@ -59,17 +59,6 @@ ir::TypeId Values::own_type(const Note& note, ir::TypeId target) const {
   return note.type;
 }
 
-// pt - start, where `start` is a number that holds an address: a distance, though the type is a
-// pointer's, and so is what a constant moves it by.
-bool References::is_distance(ExprId id) {
-  const Expr& expr = tree_[id];
-  if (expr.kind != ExprKind::kBinary) return false;
-  if (expr.binary != BinaryOp::kAdd && expr.binary != BinaryOp::kSub) return false;
-  if (!types().is_reference(infer(expr.operand).type)) return false;
-  if (expr.binary == BinaryOp::kSub && !infer(expr.right).constant) return true;
-  return is_distance(expr.operand);
-}
-
 ir::ValueId Values::value(ExprId id, ir::TypeId target) {
   const Note& note = infer(id);
   const Expr& expr = tree_[id];
@@ -100,11 +89,10 @@ ir::ValueId Values::value(ExprId id, ir::TypeId target) {
     check_wrapped(*this, id, "widened");
   if (types().is_reference(own) && !types().is_reference(target) &&
       ask<References>().is_distance(id)) {
-    ir::TypeId number = elementary(ir::Kind::kDword);
-    return convert(
-        {ask<References>().convert_reference({emit(id, own), own}, number, expr.span), number},
-        target, expr.span);
+    return ask<References>().distance(id, target, expr.span);
   }
+  if (ask<References>().is_of_two_pointers(id, target))
+    return code_.machine_convert(emit(id, own), scalar(own), scalar(target));
   return convert({emit(id, own), own}, target, expr.span);
 }
 
