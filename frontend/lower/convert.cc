@@ -141,14 +141,17 @@ ir::ValueId ValueCode::from_time(Typed from, ir::TypeId to) {
 
 ir::ValueId ValueCode::to_time(Typed from, ir::TypeId to) {
   int64_t unit = unit_of(types().root_kind(to));
+  const bool of_day = is_time_of_day(types(), to);
   ir::Scalar machine = scalar(from.type);
   if (ir::is_float(machine)) {
     ir::ValueId real = machine_convert(from.value, machine, ir::Scalar::kF64);
     ir::ValueId factor = build_.constant(ir::Scalar::kF64, double_bits(static_cast<double>(unit)));
     real = build_.binary(ir::Op::kMul, ir::Scalar::kF64, real, factor);
-    return build_.unary(ir::Op::kRound, ir::Scalar::kI64, real);
+    const ir::ValueId whole = build_.unary(ir::Op::kRound, ir::Scalar::kI64, real);
+    return of_day ? floor_modulo(whole, ir::kNsPerDay) : whole;
   }
   ir::ValueId count = machine_convert(from.value, machine, ir::Scalar::kI64);
+  if (of_day) count = floor_modulo(count, ir::kNsPerDay / unit);
   if (unit == 1) return count;
   ir::ValueId factor = build_.constant(ir::Scalar::kI64, static_cast<uint64_t>(unit));
   return build_.binary(ir::Op::kMul, ir::Scalar::kI64, count, factor);

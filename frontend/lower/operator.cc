@@ -6,6 +6,7 @@
 #include "frontend/sema/expressions/operator_types.h"
 #include "frontend/sema/expressions/operators.h"
 #include "frontend/sema/expressions/width.h"
+#include "ir/types/time_units.h"
 
 namespace frontend {
 namespace {
@@ -185,6 +186,7 @@ Typed ValueCode::time_arithmetic(BinaryOp op, Typed left, Typed right) {
   bool any_long = is_long_time(types()[left.type].kind) || is_long_time(types()[right.type].kind);
   if (a.date && b.date) type = elementary(any_long ? ir::Kind::kLtime : ir::Kind::kTime);
   if (a.duration && any_long) type = elementary(ir::Kind::kLtime);
+  if (is_time_of_day(types(), type)) result = floor_modulo(result, ir::kNsPerDay);
   return {result, type};
 }
 

@@ -11,6 +11,7 @@
 #include "frontend/sema/expressions/width.h"
 #include "frontend/sema/types/types.h"
 #include "ir/types/natural_layout.h"
+#include "ir/types/time_units.h"
 
 namespace frontend {
 namespace {
@@ -225,6 +226,9 @@ std::optional<Constant> Folder::enumerator(ir::TypeId type, const Expr& name) {
 std::optional<Constant> Folder::exact(Constant result, Wide value, const Expr& expr) {
   if (result.flex == Flex::kNone) {
     value = wrap_to(sema_.program.types.scalar(result.type), value);
+    if (is_time_of_day(sema_.program.types, result.type)) {
+      value = (value % ir::kNsPerDay + ir::kNsPerDay) % ir::kNsPerDay;
+    }
   } else if (value > kMaxExact * 4 || value < -kMaxExact * 2) {
     error(DiagnosticCode::kConstantOverflow, expr.span,
           "the value " + wide_text(value) + " fits no type");

@@ -133,6 +133,12 @@ bool is_string(const ir::TypeTable& types, ir::TypeId type) {
   return type.valid() && (types[type].kind == Kind::kString || types[type].kind == Kind::kWstring);
 }
 
+bool is_time_of_day(const ir::TypeTable& types, ir::TypeId type) {
+  if (!type.valid() || !types.is_scalar(type)) return false;
+  const Kind kind = types.root_kind(type);
+  return kind == Kind::kTod || kind == Kind::kLtod;
+}
+
 Traits traits_of(const ir::TypeTable& types, ir::TypeId type) {
   type = without_range(types, type);
   if (!type.valid()) return {};

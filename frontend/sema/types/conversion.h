@@ -49,6 +49,8 @@ inline ir::TypeId without_range(const ir::TypeTable& types, ir::TypeId type) {
 }
 bool is_enum(const ir::TypeTable& types, ir::TypeId type);
 bool is_string(const ir::TypeTable& types, ir::TypeId type);  // STRING or WSTRING
+// TOD or LTOD, whose values stay within a day.
+bool is_time_of_day(const ir::TypeTable& types, ir::TypeId type);
 
 // What an elementary type is good for. Enumerations and aggregates: none of them.
 struct Traits {
