@@ -10,6 +10,7 @@
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/expressions/operand_warnings.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 
@@ -43,7 +44,7 @@ ir::TypeId Values::own_type(const Note& note, ir::TypeId target) const {
   ir::TypeId plain = without_range(types(), target);
   switch (note.flex) {
     case Flex::kNone:
-      return note.type;
+      return signed_by_context(types(), note, target);
     case Flex::kInteger:
       return traits.number() || traits.bits ? plain : note.type;
     case Flex::kReal:

@@ -199,8 +199,11 @@ struct Note {
   uint8_t bit_size = 0;      // x.3, x.%B1, x.NUMBER: size and number of the part; else 0
   uint32_t bit_number = 0;
   int32_t bit_member = -1;  // of a BIT member: the member of the structure that holds it
-  bool view = false;        // with bit_size: a BOOL at a bit of shared bytes, by its name
-  bool calls = false;       // contains a call of a POU
+  // A DINT or LINT that is never negative: in the context of UDINT, ULINT and bit strings of its
+  // size it is computed in them (width.h).
+  bool any_sign = false;
+  bool view = false;   // with bit_size: a BOOL at a bit of shared bytes, by its name
+  bool calls = false;  // contains a call of a POU
   bool can_trap = false;
   VarId variable;  // kName: the variable meant
   // The block or interface whose property of this name the expression is.

@@ -200,6 +200,8 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       if (divides && note.type.valid() && argument(1).constant && !argument(0).constant) {
         check_divisor(*this, args[1], !traits_of(sema_.program.types, note.type).real);
       }
+      for (const ExprId arg : args)
+        note = widened_by(*this, note, arg, row.rule == FunctionRule::kArithmetic);
       return note;
     }
     case FunctionRule::kNot: {
@@ -219,10 +221,14 @@ Note StandardCalls::infer_rule(const Expr& expr, const stdlib::FunctionRow& row,
       return count.integer || count.bits ? note : refuse(argument(1));
     }
     case FunctionRule::kSelect:
-    case FunctionRule::kMux:
-      return ask<OperatorTypes>().unify_arguments(args, 1);
+    case FunctionRule::kMux: {
+      Note note = ask<OperatorTypes>().unify_arguments(args, 1);
+      for (size_t i = 1; i < args.size(); ++i) note = widened_by(*this, note, args[i], false);
+      return note;
+    }
     case FunctionRule::kExtreme: {
       Note note = ask<OperatorTypes>().unify_arguments(args, 0);
+      for (const ExprId arg : args) note = widened_by(*this, note, arg, false);
       bool ordered =
           sema_.program.types.is_scalar(note.type) || is_string(sema_.program.types, note.type);
       return !note.type.valid() || ordered ? note : refuse(note);

@@ -286,10 +286,12 @@ void Folder::warn_of_remainder(const Expr& expr, Wide a, Wide b) const {
 std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
   const Note note = infer(id);
   ir::TypeId saved = context_;
+  const ir::TypeId own = note.any_sign ? signed_by_context(sema_.program.types, note, saved)
+                                       : computed_type(sema_, note);
   if (operator_class(expr.binary) == OperatorClass::kComparison) {
     context_ = ask<OperatorTypes>().unify(infer(expr.operand), infer(expr.right), expr.span).type;
   } else if (note.flex == Flex::kNone) {
-    context_ = computed_type(sema_, note);
+    context_ = own;
   }
   const bool whole = is_whole_quotient(expr, note);
   const bool for_real = whole && context_is_real();
@@ -303,7 +305,7 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
     } else {
       Constant result;
       result.flex = note.flex;
-      result.type = computed_type(sema_, note);
+      result.type = own;
       bool real = note.flex == Flex::kNone ? traits_of(sema_.program.types, note.type).real
                                            : note.flex == Flex::kReal || context_is_real();
       bool scaled = a->form == Constant::Form::kReal || b->form == Constant::Form::kReal;

@@ -53,6 +53,7 @@ const Note& Expressions::infer_now(ExprId id, Note& note) {
   ++sema_.facts.depth;
   note = infer_kind(id, expr);
   if (expr.kind != ExprKind::kName && expr.kind != ExprKind::kMember) note.property = kNoPou;
+  note.any_sign = note.any_sign && expr.kind == ExprKind::kBinary;
   note.reference = {};
   if (note.type.valid() && sema_.program.types[note.type].kind == ir::Kind::kReferenceTo) {
     note.reference = note.type;

@@ -124,7 +124,9 @@ Note OperatorTypes::unify(const Note& a, const Note& b, base::SourceSpan span) {
     note.type = a.type;
     return note;
   } else {
-    note.type = common_type(types, a.type, b.type, sema_.options.dialect);
+    const ir::TypeId first = signed_by_context(types, a, b.type);
+    const ir::TypeId second = signed_by_context(types, b, a.type);
+    note.type = common_type(types, first, second, sema_.options.dialect);
     if (note.type.valid()) return note;
   }
   error(DiagnosticCode::kOperandsDiffer, span,
@@ -146,7 +148,10 @@ Note OperatorTypes::infer_binary(const Expr& expr) {
       bool eager = expr.binary == BinaryOp::kAnd || expr.binary == BinaryOp::kOr;
       bool boolean = traits_of(sema_.program.types, right.type).boolean;
       if (eager && boolean && right.can_trap) check_right_operand(*this, expr);
-      return infer_bitwise(expr.binary, left, right, expr.span);
+      Note note = infer_bitwise(expr.binary, left, right, expr.span);
+      for (const ExprId side : {expr.operand, expr.right})
+        note = widened_by(*this, note, side, false);
+      return note;
     }
     case OperatorClass::kComparison:
       check_real_equality(*this, expr);
@@ -155,7 +160,10 @@ Note OperatorTypes::infer_binary(const Expr& expr) {
       return infer_comparison(expr.binary, left, right, expr.span);
     case OperatorClass::kArithmetic: {
       Note note = infer_arithmetic(expr.binary, left, right, expr.span);
-      note = widened_by(sema_, widened_by(sema_, note, expr.operand), expr.right);
+      const ir::TypeId unified = note.type;
+      for (const ExprId side : {expr.operand, expr.right})
+        note = widened_by(*this, note, side, true);
+      note.any_sign = has_any_sign(*this, expr, unified, note);
       bool divides = expr.binary == BinaryOp::kDiv || expr.binary == BinaryOp::kMod;
       if (divides && note.type.valid() && right.constant && !left.constant) {
         check_divisor(*this, expr.right, !traits_of(sema_.program.types, note.type).real);

@@ -148,6 +148,11 @@ class Ranges {
 
 Limits range_of(const Phase& phase, ExprId id) { return Ranges(phase).of(id, 0); }
 
+bool is_natural(const Phase& phase, ExprId id) {
+  Ranges ranges(phase);
+  return (phase.infer(id).constant ? ranges.of(id, 0) : ranges.exact_of(id, 0)).low >= 0;
+}
+
 bool may_leave_type(const Phase& phase, ExprId id) {
   const ir::TypeTable& types = phase.sema().program.types;
   const Limits own = limits_of(types.scalar(phase.infer(id).type));

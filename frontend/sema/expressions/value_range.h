@@ -12,5 +12,7 @@ namespace frontend {
 Limits range_of(const Phase& phase, ExprId id);
 // What an operator would give if its type were large enough.
 bool may_leave_type(const Phase& phase, ExprId id);
+// Can it only be 0 or above, if its type is large enough?
+bool is_natural(const Phase& phase, ExprId id);
 
 }  // namespace frontend

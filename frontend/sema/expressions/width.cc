@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/expressions/value_range.h"
 #include "frontend/sema/phase.h"
 #include "frontend/sema/types/conversion.h"
 
@@ -130,12 +131,12 @@ ir::TypeId compared_with_literals(const Phase& phase, ir::TypeId compared,
   const Traits traits = traits_of(types, compared);
   const uint32_t size = ir::scalar_size(types.scalar(compared));
   if ((!traits.integer && !traits.bits) || size == 8) return compared;
-  const bool is_signed = ir::is_signed(types.scalar(compared));
   ir::TypeId out = compared;
   for (const ExprId id : operands) {
     const auto value = bare_literal(phase, id);
-    if (!value || phase.ask<Constants>().fits(*value, compared)) continue;
-    if (value->integer < 0 && size == 4 && !is_signed) return compared;  // -1 may be all bits
+    // A small bit string is never below 0; -1 may be all bits of a DWORD, which has no DINT.
+    const bool below = value && value->integer < 0 && size < 4 && traits.bits;
+    if (!value || (!below && phase.ask<Constants>().fits(*value, compared))) continue;
     const auto within = [&](ir::Scalar scalar) {
       const Limits limits = limits_of(scalar);
       return value->integer >= limits.low && value->integer <= limits.high;
@@ -151,25 +152,90 @@ ir::TypeId compared_with_literals(const Phase& phase, ir::TypeId compared,
   return out;
 }
 
-Note widened_by(const Sema& sema, Note note, ExprId operand) {
-  const Expr* expr = &sema.tree[operand];
-  const bool negative = note.width == Width::kWraps && expr->kind == ExprKind::kUnary &&
-                        expr->unary == UnaryOp::kNegate;
-  if (negative) expr = &sema.tree[expr->operand];
-  if (note.width == Width::kOwn || expr->kind != ExprKind::kLiteral) return note;
-  const Literal& literal = sema.tree.literals[expr->number];
-  if (literal.kind != LiteralKind::kInteger || literal.prefix != kNoNumber) return note;
-  const ir::TypeTable& types = sema.program.types;
-  const auto value = static_cast<Wide>(literal.integer);
-  const Limits limits = limits_of(types.scalar(note.type));
-  if (negative ? -value >= limits.low : value <= limits.high) return note;
-  const Wide dint = limits_of(ir::Scalar::kI32).high;
-  const Wide lint = limits_of(ir::Scalar::kI64).high;
-  note.type = types.elementary(value <= dint   ? ir::Kind::kDint
-                               : value <= lint ? ir::Kind::kLint
-                                               : ir::Kind::kUlint);
-  note.width = Width::kOwn;
+namespace {
+
+bool holds(ir::Scalar scalar, Wide value) {
+  const Limits limits = limits_of(scalar);
+  return value >= limits.low && value <= limits.high;
+}
+
+// The first of `kinds` that holds the literal and all that `own` does.
+ir::TypeId first_holding(const ir::TypeTable& types, std::initializer_list<ir::Kind> kinds,
+                         Wide literal, ir::Scalar own) {
+  const Limits limits = limits_of(own);
+  for (const ir::Kind kind : kinds) {
+    const ir::TypeId type = types.elementary(kind);
+    const ir::Scalar scalar = types.scalar(type);
+    const bool both = holds(scalar, literal) && holds(scalar, limits.low);
+    if (both && holds(scalar, limits.high)) return type;
+  }
+  return {};
+}
+
+// Invalid: there is none.
+ir::TypeId type_with_literal(const ir::TypeTable& types, ir::TypeId own, Wide literal,
+                             bool arithmetic) {
+  using ir::Kind;
+  const ir::Scalar scalar = types.scalar(own);
+  if (arithmetic) {
+    return first_holding(types, {Kind::kDint, Kind::kLint, Kind::kUlint}, literal, scalar);
+  }
+  if (traits_of(types, own).bits) {
+    return first_holding(types, {Kind::kWord, Kind::kDword, Kind::kLword}, literal, scalar);
+  }
+  if (!ir::is_signed(scalar) && literal >= 0) {
+    return first_holding(types, {Kind::kUint, Kind::kUdint, Kind::kUlint}, literal, scalar);
+  }
+  return first_holding(types, {Kind::kInt, Kind::kDint, Kind::kLint}, literal, scalar);
+}
+
+bool is_never_negative(const Phase& phase, ExprId id) {
+  return phase.infer(id).any_sign || is_natural(phase, id);
+}
+
+}  // namespace
+
+Note widened_by(const Phase& phase, Note note, ExprId operand, bool arithmetic) {
+  const ir::TypeTable& types = phase.sema().program.types;
+  if (note.flex != Flex::kNone || !note.type.valid() || !types.is_scalar(note.type)) return note;
+  const Traits traits = traits_of(types, note.type);
+  if (!traits.integer && !traits.bits) return note;
+  const auto value = bare_literal(phase, operand);
+  if (!value || holds(types.scalar(note.type), value->integer)) return note;
+  const bool computed_as_dint = note.width == Width::kWide;
+  if (arithmetic && computed_as_dint && value->integer < 0 &&
+      holds(ir::Scalar::kI32, value->integer)) {
+    return note;
+  }
+  const bool grows = arithmetic && note.width != Width::kOwn;
+  if (!grows && phase.ask<Constants>().fits(*value, note.type)) return note;  // as bits
+  const ir::TypeId wider = type_with_literal(types, note.type, value->integer, arithmetic);
+  if (!wider.valid()) return note;
+  note.type = wider;
+  const bool stays_wide = computed_as_dint && !arithmetic && is_small(phase.sema(), note);
+  note.width = stays_wide ? Width::kWide : Width::kOwn;
   return note;
+}
+
+bool has_any_sign(const Phase& phase, const Expr& expr, ir::TypeId unified, const Note& note) {
+  const ir::TypeTable& types = phase.sema().program.types;
+  if (note.flex != Flex::kNone || !note.type.valid() || expr.binary == BinaryOp::kSub) return false;
+  const Note& left = phase.infer(expr.operand);
+  const Note& right = phase.infer(expr.right);
+  if (note.type == unified && !left.any_sign && !right.any_sign) return false;
+  const bool whole =
+      types[note.type].kind == ir::Kind::kDint || types[note.type].kind == ir::Kind::kLint;
+  return whole && is_never_negative(phase, expr.operand) && is_never_negative(phase, expr.right);
+}
+
+ir::TypeId signed_by_context(const ir::TypeTable& types, const Note& note, ir::TypeId target) {
+  if (!note.any_sign || !target.valid() || !types.is_scalar(target)) return note.type;
+  const Traits traits = traits_of(types, target);
+  const uint32_t size = ir::scalar_size(types.scalar(note.type));
+  const bool takes = (traits.integer || traits.bits) && !ir::is_signed(types.scalar(target)) &&
+                     ir::scalar_size(types.scalar(target)) >= size;
+  if (!takes) return note.type;
+  return types.elementary(size == 4 ? ir::Kind::kUdint : ir::Kind::kUlint);
 }
 
 bool wraps_outside(const Sema& sema, const Note& note, const Expr& index, const Note& left,

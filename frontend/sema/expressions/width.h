@@ -35,9 +35,15 @@ ir::TypeId compared_with_literals(const Phase& phase, ir::TypeId compared,
                                   const std::vector<ExprId>& operands);
 // Was one of them made by an operator that computes it as DINT?
 bool has_wide(const Phase& phase, const std::vector<ExprId>& operands);
-// A literal that does not fit the type of the other operand gives the operation its own type: DINT,
-// or a longer one.
-Note widened_by(const Sema& sema, Note note, ExprId operand);
+// A literal that does not fit the type of the other operands gives the operation the smallest type
+// that holds both: DINT or a longer one where it is `arithmetic`, which grows. `note`: as unified.
+Note widened_by(const Phase& phase, Note note, ExprId operand, bool arithmetic);
+// Of a binary operator whose note was `unified` before literals widened it: can its context choose
+// between DINT and UDINT, LINT and ULINT? `u * 70000` of a UINT.
+bool has_any_sign(const Phase& phase, const Expr& expr, ir::TypeId unified, const Note& note);
+// The unsigned type of the same size, where such a note stands in the context of `target`;
+// else its own type.
+ir::TypeId signed_by_context(const ir::TypeTable& types, const Note& note, ir::TypeId target);
 // `a[i + 1]`: is an index that wraps in its own type out of bounds then? A wide index is out of
 // bounds in the same cases, so the small one will do. The text of the trap has the wrapped number.
 bool wraps_outside(const Sema& sema, const Note& note, const Expr& index, const Note& left,
