@@ -14,7 +14,7 @@ struct Constant {
   enum class Form : uint8_t { kInteger, kReal, kText, kAggregate };
   Form form = Form::kInteger;
   Flex flex = Flex::kNone;
-  bool literal = false;  // a typed literal: INT#5
+  bool literal = false;  // a typed literal, INT#5, or an operation on one
   bool pattern = false;  // written with 2# 8# 16#, or AND OR XOR of such: bits, not a number
   ir::TypeId type;       // valid unless `flex` says that the context decides
   Wide integer = 0;      // also BOOL, bit strings, times, enumerations, characters

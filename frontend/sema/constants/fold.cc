@@ -317,6 +317,7 @@ std::optional<Constant> Folder::binary(ExprId id, const Expr& expr) {
         bool logical = operator_class(expr.binary) == OperatorClass::kLogical;
         if (out) out->pattern = logical && a->pattern && b->pattern;
       }
+      if (out) out->literal = a->literal || b->literal;
     }
   }
   context_ = saved;
