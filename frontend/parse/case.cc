@@ -64,8 +64,8 @@ Range32 Parser::parse_case_labels() {
   return move_tail(label_stack_, mark, tree_.labels);
 }
 
-// Statements never begin with a literal. A name begins a label when, after its
-// members, `:`, `,` or `..` follows; `A + 1:` needs a look at the whole line.
+// Statements never begin with a literal. A name begins a label when, after its members and the
+// arguments of a function, `:`, `,` or `..` follows; `A + 1:` needs a look at the whole line.
 bool Parser::at_case_label() const {
   switch (kind()) {
     case TokenKind::kInteger:
@@ -82,15 +82,28 @@ bool Parser::at_case_label() const {
     default:
       break;
   }
-  if (!is_name(kind())) return false;
-  size_t at = 1;
+  if (!is_name(kind()) && kind() != TokenKind::kLeftParen) return false;
+  // The token behind the parenthesis that is closed; `at` where it is not closed soon.
+  const auto behind_parentheses = [this](size_t at) {
+    static constexpr size_t kMostTokens = 64;
+    size_t open = 0;
+    for (size_t i = at; i < at + kMostTokens; ++i) {
+      const TokenKind ahead = peek(i).kind;
+      if (ahead == TokenKind::kLeftParen) ++open;
+      if (ahead == TokenKind::kRightParen && --open == 0) return i + 1;
+      if (ahead == TokenKind::kSemicolon || is_statement_boundary(ahead)) break;
+    }
+    return at;
+  };
+  size_t at = kind() == TokenKind::kLeftParen ? 0 : 1;
   while (peek(at).kind == TokenKind::kDot && is_name(peek(at + 1).kind)) at += 2;
+  if (peek(at).kind == TokenKind::kLeftParen) at = behind_parentheses(at);
   TokenKind next = peek(at).kind;
   if (next == TokenKind::kColon || next == TokenKind::kComma || next == TokenKind::kRange) {
     return true;
   }
   bool computed = next == TokenKind::kPlus || next == TokenKind::kMinus ||
-                  next == TokenKind::kStar || next == TokenKind::kSlash;
+                  next == TokenKind::kStar || next == TokenKind::kSlash || next == TokenKind::kMod;
   if (!computed) return false;
   static constexpr size_t kLongestLabel = 32;
   for (size_t i = at; i < at + kLongestLabel; ++i) {
