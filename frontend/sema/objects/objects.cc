@@ -44,7 +44,13 @@ void Objects::add_member(uint32_t block, const PouDecl& decl) {
   uint32_t& slot = !accessor                       ? code.method
                    : decl.kind == PouKind::kGetter ? code.getter
                                                    : code.setter;
-  const bool taken = slot != kNoPou || (accessor ? code.method != kNoPou : code.is_property()) ||
+  // GET and SET belong to one PROPERTY.
+  const uint32_t other_accessor = decl.kind == PouKind::kGetter ? code.setter : code.getter;
+  const bool apart =
+      accessor && other_accessor != kNoPou &&
+      sema_.declared.pous[other_accessor].decl->name.span.begin != decl.name.span.begin;
+  const bool taken = slot != kNoPou || apart ||
+                     (accessor ? code.method != kNoPou : code.is_property()) ||
                      owner.names.contains(decl.name.text);
   if (taken) {
     const base::SourceSpan other = same_name_in(sema_.declared, owner, code, decl.name);
