@@ -90,7 +90,9 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/base/check.cc ${CMAKE_SOURCE_DIR}/base/large_pages.cc
      ${CMAKE_SOURCE_DIR}/stdlib/native/from_text.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/standby.cc
-     ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_exchange.cc)
+     ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_exchange.cc
+     ${CMAKE_SOURCE_DIR}/stdlib/native/to_text.cc
+     ${CMAKE_SOURCE_DIR}/vm/exec/step_facts.cc)
 # Where a native version spends its time while it is made.
 foreach(name facts allocate allocator_state uses forward simplify numbers)
   list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)
@@ -100,12 +102,13 @@ set(STC_CLIENT)
 foreach(name abort bench bridge change change_follow controller_client doctor edits events
         fate_view get image journal json_value names package_making plot question remote_client
         restart revoke set source status stop switch_steps switch_text times_text trace undo
-        undo_only unit_table values waiting watch)
+        undo_only unit_table values waiting watch first_scans activity_text event_filter compiler
+        hand_over replay hard_mode)
   list(APPEND STC_CLIENT ${CMAKE_SOURCE_DIR}/tools/stvm/${name}.cc)
 endforeach()
 file(GLOB more_clients ${CMAKE_SOURCE_DIR}/tools/stvm/fleet*.cc
      ${CMAKE_SOURCE_DIR}/tools/stvm/top*.cc ${CMAKE_SOURCE_DIR}/tools/stvm/timing*.cc)
-list(APPEND STC_CLIENT ${more_clients})
+list(APPEND STC_CLIENT ${more_clients} ${CMAKE_SOURCE_DIR}/tools/common/table.cc)
 list(REMOVE_ITEM STC_SMALL ${STC_CLIENT})
 # The back end of the other machine makes no code here.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")

@@ -1,7 +1,6 @@
 #include "online_change/apply/change.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -16,17 +15,7 @@
 namespace online_change {
 namespace {
 
-// Only measures; nothing that runs depends on it.
-int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 const Plan kNothing;
-
-// Without it, start code would find nothing to do.
-bool does_anything(const Plan& plan) { return !plan.steps.empty() || plan.counts.dropped != 0; }
 
 }  // namespace
 
@@ -153,10 +142,6 @@ const ir::VerifiedImage* Change::next() const {
 
 bool Change::keeps_all() const { return pending_ && pending_->keeps_all; }
 
-const Plan& Change::undo_plan() const {
-  return state_ == State::kTrial ? pending_->package.inverse : kNothing;
-}
-
 Strategy Change::strategy() const { return pending_ ? pending_->strategy : Strategy::kInPlace; }
 
 base::Status Change::arm(bool allow_loss, bool allow_overrun) {
@@ -262,7 +247,7 @@ base::Result<SwitchReport> Change::switch_steps(bool again) {
   if (!controller_.at_boundary()) return no_boundary();
   if (controller_.starts_anew() && !controller_.faulted()) return starts_anew();
   SwitchReport report = report_begin();
-  int64_t begin_ns = monotonic_ns();
+  int64_t begin_ns = measured_ns();
   const bool leaves = !pending_->leaving.at_switch.empty();
   base::Status carried = leaves ? check_losses(pending_->allow_loss) : base::Status(base::Ok{});
   if (carried.ok()) {
@@ -287,7 +272,7 @@ base::Result<SwitchReport> Change::switch_steps(bool again) {
   pending_->ended_forces = moved_forces_.ended;
   state_ = State::kTrial;
   if (base::Status entered = enter(); !entered.ok()) return entered.error();
-  report.pause_ns = monotonic_ns() - begin_ns;
+  report.pause_ns = measured_ns() - begin_ns;
   report.counts = plan().counts;
   return report;
 }
@@ -302,7 +287,7 @@ base::Status Change::enter() {
 
 void Change::take_back() {
   const auto interrupted = std::exchange(interrupted_, nullptr);
-  const bool undone = undo_steps(Exits::kSkip, true).ok();
+  const bool undone = undo_steps(Exits::kSkip, Losses::kAllowed, true).ok();
   interrupted_ = interrupted;
   base::check(undone, "a switch whose FB_Init trapped cannot be undone");
   // What FB_Exit and start code wrote to other variables goes with it.
@@ -312,56 +297,6 @@ void Change::take_back() {
   } else if (retired_area_) {
     retired_area_->put_back(memory);
   }
-}
-
-base::Result<SwitchReport> Change::undo(Exits exits) {
-  return guarded([&] { return undo_steps(exits); });
-}
-
-base::Result<SwitchReport> Change::undo_steps(Exits exits, bool whatever_happens) {
-  if (state_ != State::kTrial) {
-    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
-  }
-  if (!controller_.at_boundary()) return no_boundary();
-  const bool leaves = !pending_->leaving.at_undo.empty() && exits == Exits::kRun;
-  if (!pending_->waiting || (leaves && !pending_->kept_back)) return not_primed();
-  SwitchReport report = report_begin();
-  uint8_t* memory = controller_.memory().data();
-  const std::string lost = pending_->charts.lost_on_the_way_back(memory);
-  if (!lost.empty() && !whatever_happens) {
-    return base::Error{base::Refusal::kActiveStepGone, lost};
-  }
-  int64_t begin_ns = monotonic_ns();
-  Transfer& back = pending_->backward;
-  base::Status left = base::Ok{};
-  if (leaves) left = leave(pending_->leaving.at_undo);
-  if (left.ok() && pending_->migrate_back) left = pending_->migrate_back->run(memory);
-  if (!left.ok() && !whatever_happens) {
-    put_back_kept();
-    return left.error();
-  }
-  const bool led_back = pending_->handles.back(memory, interrupted_);
-  const bool remembered =
-      !pending_->area || back.remember(pending_->area->data().data(), interrupted_);
-  count_undo();
-  bool done = led_back && remembered && back.read_back(memory, pending_->forward, interrupted_) &&
-              back.save(memory, interrupted_) && back.write(memory, interrupted_);
-  if (!done) {
-    if (led_back) pending_->handles.restore(memory);
-    put_back_kept();
-    return base::Error{base::Refusal::kDeadline, "the undo was abandoned; the trial goes on"};
-  }
-  pending_->charts.settle(memory);
-  retired_ = controller_.publish(std::move(pending_->waiting));
-  moved_forces_ = controller_.take_moved_forces();
-  if (does_anything(pending_->package.inverse)) controller_.construct();
-  report.pause_ns = monotonic_ns() - begin_ns;
-  report.counts = pending_->package.inverse.counts;
-  retired_area_ = std::move(pending_->area);
-  retired_pending_ = std::move(pending_);
-  state_ = State::kIdle;
-  resume();
-  return report;
 }
 
 void Change::cancel() {

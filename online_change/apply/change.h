@@ -55,6 +55,9 @@ enum class Exits : uint8_t {
   kSkip,  // for one that traps whatever happens: it would keep the edit on trial for ever
 };
 
+// What an undo does where a value, written since the change, fits its old type only with a loss.
+enum class Losses : uint8_t { kRefused, kAllowed };
+
 // Runs a job at a boundary and waits for its end.
 using AtBoundary = std::function<base::Status(const std::function<void()>& job)>;
 
@@ -107,8 +110,6 @@ class Change {
   bool keeps_all() const;
   // What live_losses() reads of data memory.
   std::vector<ir::DataRange> looked_at() const;
-  // In trial: what undo() would do.
-  const Plan& undo_plan() const;
   Strategy strategy() const;
   // The pause of the switch; in trial, that of undo. It is that of this machine, if set_pace() has
   // been told of it.
@@ -151,8 +152,26 @@ class Change {
   base::Status accept_oldest(size_t edits);
   // Trial -> Idle, or the trial of the edit before, with version 1 again; at a boundary, after
   // prime(). Inverse plan on the current state; values that the change dropped or narrowed come
-  // back as they were, if nobody wrote them since.
-  base::Result<SwitchReport> undo(Exits exits = Exits::kRun);
+  // back as they were, if nobody wrote them since; what somebody wrote is converted, and is refused
+  // where that loses (kWouldLose).
+  base::Result<SwitchReport> undo(Exits exits = Exits::kRun, Losses losses = Losses::kRefused);
+  // In trial, of the edit that `below` others were made on top of: where its undo leads to.
+  struct WayBack {
+    const Plan& plan;
+    const ir::VerifiedImage& from;
+    const ir::VerifiedImage& to;
+    int64_t predicted_pause_ns = 0;
+    std::span<const uint32_t> leaving;  // as leaving()
+  };
+  WayBack way_back(size_t below) const;
+  // Makes of a copy of the data of `from` what that undo makes of it, and tells the losses, the
+  // first kMostLosses. FB_Exit does not run, and migrations only for the newest edit. After
+  // prime(), beside the running program.
+  struct ImaginedUndo {
+    std::vector<LiveLoss> losses;
+    uint64_t loss_count = 0;
+  };
+  ImaginedUndo imagine_undo(size_t below, uint8_t* memory);
   // In trial: the instances of the running version with an FB_Exit that undo() takes away.
   std::span<const uint32_t> leaving() const;
   // Before undo(), not at a boundary: what the version before needs to run is made again where
@@ -189,7 +208,8 @@ class Change {
   void give_back(Plan& forward, const ir::Image& next, TakenOut taken_out) const;
   base::Status arm_steps(bool allow_loss, bool allow_overrun);
   base::Result<SwitchReport> switch_steps(bool again);
-  base::Result<SwitchReport> undo_steps(Exits exits, bool whatever_happens = false);
+  base::Result<SwitchReport> undo_steps(Exits exits, Losses losses, bool whatever_happens = false);
+  Pending& on_trial_at(size_t below) const;
   base::Status enter();
   void take_back();
   void put_back_kept();

@@ -168,7 +168,8 @@ void put_initial_last(std::span<LiveLoss> rows, const ir::Image& old_image) {
 }
 
 base::Error would_lose(const LiveLoss& first, uint64_t more) {
-  std::string text = "`" + first.path + "` is " + first.old_value + "; it " + first.what;
+  std::string text = "`" + first.path + "` is " + first.old_value + "; it " +
+                     (first.what == "inexact" ? "is " : "") + first.what;
   if (!first.new_value.empty()) text += " and would become " + first.new_value;
   if (more != 0) text += " (and " + std::to_string(more) + " more)";
   return {base::Refusal::kWouldLose, text + "; allow it with --allow-loss, or change the program"};

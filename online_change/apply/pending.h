@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -23,6 +24,18 @@
 #include "vm/load/left_outputs.h"
 
 namespace online_change {
+
+// Only measures; nothing that runs depends on it.
+inline int64_t measured_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+// Without it, start code would find nothing to do.
+inline bool does_anything(const Plan& plan) {
+  return !plan.steps.empty() || plan.counts.dropped != 0;
+}
 
 // Standby: passes after the first copy, until what they leave for the boundary fits.
 struct CatchingUp {

@@ -248,7 +248,7 @@ bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
   return true;
 }
 
-bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
+bool Transfer::read_back(const uint8_t* memory, const Transfer& forward, const OnLoss& on_loss,
                          const Interrupted& interrupted) {
   base::dcheck(remembered_.size() == staged_.size(), "the way back has room for what was");
   for (const Piece& piece : pieces_) {
@@ -258,7 +258,7 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
         read_values(piece, memory, staged_.data() + piece.at);
         break;
       case StepKind::kConvert:
-        read_back_converted(piece, memory, forward);
+        if (!read_back_converted(piece, memory, forward, on_loss)) return false;
         break;
       case StepKind::kGather:
         std::memcpy(staged_.data() + piece.at, remembered_.data() + piece.at, piece.total());
@@ -285,8 +285,8 @@ bool Transfer::read_back(const uint8_t* memory, const Transfer& forward,
   return true;
 }
 
-void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
-                                   const Transfer& forward) {
+bool Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
+                                   const Transfer& forward, const OnLoss& on_loss) {
   const ConvertedValues& how = conversion_of(piece);
   const uint32_t size = conversions_.source_size(how);
   for (uint32_t i = 0; i < piece.count; ++i) {
@@ -294,14 +294,16 @@ void Transfer::read_back_converted(const Piece& piece, const uint8_t* memory,
     std::span<uint8_t> out(staged_.data() + at, piece.size);
     const uint8_t* const before = remembered_.data() + at;
     uint32_t from = piece.from + i * piece.from_stride;
-    if (piece.left ? std::memcmp(memory + from, before, size) == 0
-                   : forward.still_as_converted(from, size, memory)) {
+    const bool as_before = piece.left && std::memcmp(memory + from, before, size) == 0;
+    if (as_before || forward.still_as_converted(from, size, memory)) {
       std::memcpy(out.data(), before, out.size());
-    } else {
-      conversions_.convert(how, piece.first + i, memory + from, piece.to + i * piece.to_stride,
-                           out);
+      continue;
     }
+    const char* const what = conversions_.convert(how, piece.first + i, memory + from,
+                                                  piece.to + i * piece.to_stride, out);
+    if (what != nullptr && !on_loss({piece.step, piece.first + i, what})) return false;
   }
+  return true;
 }
 
 bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {

@@ -68,8 +68,9 @@ class Transfer {
   // interrupted.
   bool remember(const uint8_t* memory, const Interrupted& interrupted);
   // The way back: like read(), but what this plan initialises, and what nobody wrote since
-  // `forward` converted it, is what was remembered.
-  bool read_back(const uint8_t* memory, const Transfer& forward, const Interrupted& interrupted);
+  // `forward` converted it, is what was remembered. Losses of what is converted as in read().
+  bool read_back(const uint8_t* memory, const Transfer& forward, const OnLoss& on_loss,
+                 const Interrupted& interrupted);
   bool save(const uint8_t* memory, const Interrupted& interrupted);
   // False: interrupted and restored.
   bool write(uint8_t* memory, const Interrupted& interrupted);
@@ -120,7 +121,8 @@ class Transfer {
   bool read_converted(const Piece& piece, const uint8_t* memory, uint8_t* out,
                       const OnLoss& on_loss) const;
   bool read_piece(const Piece& piece, const uint8_t* memory, const OnLoss& on_loss);
-  void read_back_converted(const Piece& piece, const uint8_t* memory, const Transfer& forward);
+  bool read_back_converted(const Piece& piece, const uint8_t* memory, const Transfer& forward,
+                           const OnLoss& on_loss);
   void restore_first(uint8_t* memory, size_t count) const;
   // Does memory still hold what this transfer converted to `offset`?
   bool still_as_converted(uint32_t offset, uint32_t size, const uint8_t* memory) const;

@@ -75,7 +75,8 @@ base::Status Rig::make_switch() {
 
 base::Status Rig::undo() {
   if (base::Status primed = change_->prime(); !primed.ok()) return primed;
-  base::Result<online_change::SwitchReport> report = change_->undo();
+  base::Result<online_change::SwitchReport> report =
+      change_->undo(online_change::Exits::kRun, online_change::Losses::kAllowed);
   if (!report.ok()) return report.error();
   return base::Ok{};
 }

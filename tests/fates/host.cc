@@ -224,7 +224,7 @@ base::Status change(Host& host, const Pair& pair, tools::JsonWriter& json) {
   host.variables("after", json);
   base::Status written = host.set(pair.behind);
   if (!written.ok()) return written;
-  auto undone = host.connect().undo();
+  auto undone = host.connect().undo("", {vm::kWithLoss});
   if (!undone.ok()) return undone.error();
   host.variables("undone", json);
   return base::Ok{};

@@ -313,7 +313,7 @@ void World::undo() {
   const bool trial = hand.seen.edits != 0;
   // The edit below may have another policy than the one that goes.
   if (trial) may_boot_.insert(may_boot_.end(), {hand.seen.boots_next, hand.seen.previous});
-  auto report = hand.client->undo();
+  auto report = hand.client->undo("", {vm::kWithLoss});
   const vm::StatusReport now = settled();
   if (report.ok()) {
     require(trial && now.running == hand.seen.previous, "undo brings the previous program back");

@@ -11,6 +11,7 @@ namespace stvm {
 
 using online_change::Change;
 using online_change::Exits;
+using online_change::Losses;
 
 namespace {
 
@@ -251,14 +252,22 @@ base::Result<base::Bytes> ControllerService::make_switch(const vm::Request& requ
 base::Result<base::Bytes> ControllerService::undo(const vm::Request& request) {
   base::Status newest = check_newest(request);
   if (!newest.ok()) return newest.error();
-  const bool skips = request.names.size() == 2 && request.names[1] == vm::kWithoutExit;
-  if (request.names.size() > 1 && !skips) {
-    return base::Error{base::Refusal::kProtocol, "an undo in a way that is not known here"};
+  Exits exits = Exits::kRun;
+  Losses losses = Losses::kRefused;
+  for (size_t i = 1; i < request.names.size(); ++i) {
+    if (request.names[i] == vm::kWithoutExit) {
+      exits = Exits::kSkip;
+    } else if (request.names[i] == vm::kWithLoss) {
+      losses = Losses::kAllowed;
+    } else {
+      return base::Error{base::Refusal::kProtocol, "an undo in a way that is not known here"};
+    }
   }
-  return undo_now({}, skips ? Exits::kSkip : Exits::kRun);
+  return undo_now({}, exits, losses);
 }
 
-base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Exits exits) {
+base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Exits exits,
+                                                      Losses losses) {
   if (change_.prepares() && !trials_.empty()) {  // an edit on top of the one that goes
     abort_why_ = "because the edit below it was undone";
     (void)give_up();
@@ -278,7 +287,7 @@ base::Result<base::Bytes> ControllerService::undo_now(const std::string& why, Ex
       const bool stopped = controller_.faulted() || stopping_trap(UINT64_MAX) != nullptr;
       if (!stopped && !time_for_switch() && attempt != kSwitchAttempts) return;
       missed_before = controller_.missed_releases();
-      report.emplace(change_.undo(exits));
+      report.emplace(change_.undo(exits, losses));
       if (report->ok() && stopped) go_on_hot();
       done_ns = clock_.now_ns();
       if (!report->ok()) return;

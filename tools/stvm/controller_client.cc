@@ -16,7 +16,7 @@ namespace {
 // Rows of all pages together; what a controller may send is bounded.
 constexpr size_t kMaxRows = 20'000'000;
 constexpr size_t kMaxEvents = 65'536;  // a journal has 1,280 of them, a controller 2,048
-constexpr size_t kLeastPart = 4096;  // bytes of an image, of each part but the last
+constexpr size_t kLeastPart = 4096;    // bytes of an image, of each part but the last
 
 base::Error endless() {
   return {base::Refusal::kProtocol, "message not understood: pages without end"};
@@ -297,8 +297,11 @@ base::Status ControllerClient::learn_edition(const base::Result<base::Bytes>& st
   return base::Ok{};
 }
 
-base::Result<FatePage> ControllerClient::fates(const std::string& way_back) {
-  return fate_pages(way_back.empty() ? std::vector<std::string>() : std::vector{way_back});
+base::Result<FatePage> ControllerClient::fates(const std::string& way_back,
+                                               const std::string& edit) {
+  std::vector<std::string> names = {way_back, edit};
+  while (!names.empty() && names.back().empty()) names.pop_back();
+  return fate_pages(std::move(names));
 }
 
 base::Result<std::vector<FateLine>> ControllerClient::every_fate() {
@@ -333,8 +336,8 @@ base::Result<online_change::SwitchReport> ControllerClient::switch_report(vm::Re
   return decode_switch_report(*body);
 }
 
-base::Result<online_change::SwitchReport> ControllerClient::make_switch(
-    uint32_t flags, const std::string& health) {
+base::Result<online_change::SwitchReport> ControllerClient::make_switch(uint32_t flags,
+                                                                        const std::string& health) {
   vm::Request request{.command = vm::Command::kSwitch};
   request.flags = flags;
   if (!health.empty() || staged_) request.names = {health};
@@ -342,11 +345,11 @@ base::Result<online_change::SwitchReport> ControllerClient::make_switch(
   return switch_report(std::move(request));
 }
 
-base::Result<online_change::SwitchReport> ControllerClient::undo(const std::string& edit,
-                                                                 const std::string& way_back) {
+base::Result<online_change::SwitchReport> ControllerClient::undo(
+    const std::string& edit, const std::vector<std::string>& ways) {
   vm::Request request{.command = vm::Command::kUndo};
-  if (!edit.empty()) request.names = {edit};
-  if (!way_back.empty()) request.names.push_back(way_back);
+  if (!edit.empty() || !ways.empty()) request.names = {edit};
+  request.names.insert(request.names.end(), ways.begin(), ways.end());
   return switch_report(std::move(request));
 }
 

@@ -68,17 +68,19 @@ class ControllerClient {
                      const std::string& note = {}, const std::string& taken_out = {});
   // The edit that was undone last, which has that name.
   base::Status stage_again(const std::string& edit);
-  // `way_back`: vm::kWithoutExit; else "".
-  base::Result<FatePage> fates(const std::string& way_back = {});
+  // `way_back`: vm::kWithoutExit; else "". `edit`: on trial, whose undo it is about, behind that of
+  // all above it; "": of the newest one, or of what is staged.
+  base::Result<FatePage> fates(const std::string& way_back = {}, const std::string& edit = {});
   // One line for each variable.
   base::Result<std::vector<FateLine>> every_fate();
   // Switches to what was staged here, or of nothing (E-14). `health`: a BOOL that must stay TRUE in
   // the first cycles (X7); "": none.
   base::Result<online_change::SwitchReport> make_switch(uint32_t flags,
                                                         const std::string& health = {});
-  // Undoes the newest edit on trial, which has that name; "": whatever it is.
+  // Undoes the newest edit on trial, which has that name; "": whatever it is. `ways`:
+  // vm::kWithoutExit, vm::kWithLoss.
   base::Result<online_change::SwitchReport> undo(const std::string& edit = {},
-                                                 const std::string& way_back = {});
+                                                 const std::vector<std::string>& ways = {});
 
  private:
   base::Result<base::Bytes> image_parts(vm::Request request, const base::Digest* expected);

@@ -159,9 +159,7 @@ class ControllerService : public vm::Service {
                     FatePage page);
   Answer group_page(uint64_t first, const online_change::Plan& plan, const ir::VerifiedImage& next,
                     bool back, FatePage page) const;
-  // In the version that the report is about; `back`: by undo.
-  FateLine live_line(const online_change::FateRow& row, const online_change::UpdateStep* known,
-                     const ir::Image& next, bool back) const;
+  base::Status look_back(size_t below);
   void forget_staged();
   void forget_report();
   base::Error others_upload() const;
@@ -260,7 +258,8 @@ class ControllerService : public vm::Service {
   // What is switched is, or is not, one of several steps.
   void begin_or_end_chain(Trial& trial);
   void go_on_hot();
-  base::Result<base::Bytes> undo_now(const std::string& why, online_change::Exits exits);
+  base::Result<base::Bytes> undo_now(const std::string& why, online_change::Exits exits,
+                                     online_change::Losses losses);
   // "edit E2, without FB_Exit of Main.a: why"
 
   // controller_journal.cc

@@ -136,10 +136,11 @@ void ControllerService::give_back(const std::string& why) {
     vm::Request request{.command = vm::Command::kUndo};
     request.expected = controller_.verified().digest();
     request.edition = edition_;
-    undone = undo_now(why, online_change::Exits::kRun);
+    request.names = {trials_.back().edit.name, vm::kWithLoss};
+    undone = undo_now(why, online_change::Exits::kRun, online_change::Losses::kAllowed);
     if (!undone.ok() && undone.error().refusal == base::Refusal::kExitFailed) {
-      request.names = {trials_.back().edit.name, vm::kWithoutExit};
-      undone = undo_now(why, online_change::Exits::kSkip);
+      request.names.push_back(vm::kWithoutExit);
+      undone = undo_now(why, online_change::Exits::kSkip, online_change::Losses::kAllowed);
     }
     if (recorder_ != nullptr) {
       undone.ok() ? recorder_->note(vm::encode(request)) : recorder_->forget_jobs();

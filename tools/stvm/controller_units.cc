@@ -101,7 +101,7 @@ base::Result<base::Bytes> ControllerService::edits(const vm::Request& request) {
 base::Status ControllerService::check_newest(const vm::Request& request) const {
   if (trials_.empty() || request.names.empty()) return base::Ok{};
   const std::string& newest = trials_.back().edit.name;
-  if (request.names.front() == newest) return base::Ok{};
+  if (request.names.front() == newest || request.names.front().empty()) return base::Ok{};
   return base::Error{base::Refusal::kNothingToUndo,
                      "`" + request.names.front() + "` is not the newest edit on trial, which is " +
                          newest + "; `stvm edits` shows them"};

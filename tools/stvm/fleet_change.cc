@@ -111,7 +111,8 @@ FleetRow FleetChange::taken_back(FleetSeen& seen, FleetRow row, const base::Erro
     base::Result<vm::StatusReport> status = seen.client.status();
     if (gone.ok() && !status.ok()) gone = status.error();
     if (gone.ok()) {
-      base::Result<online_change::SwitchReport> undone = seen.client.undo(edits->here.front());
+      base::Result<online_change::SwitchReport> undone =
+          seen.client.undo(edits->here.front(), {vm::kWithLoss});
       if (!undone.ok()) gone = undone.error();
     }
     if (gone.ok()) continue;

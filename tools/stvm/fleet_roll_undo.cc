@@ -53,7 +53,9 @@ void FleetRoll::undo(size_t member) {
   if (!decide(member, RollState::kUndoing)) return;
   Found found = look(member);
   if (found.answers && !found.on_trial && found.accepted) return undo_accepted(member);
-  FleetUndo undo(edit_, how(member), access_);
+  SwitchOptions options = how(member);
+  options.switch_flags |= vm::kAllowLoss;  // nobody is there to ask, and the edit must go
+  FleetUndo undo(edit_, std::move(options), access_);
   FleetRow row;
   if (found.on_trial) row = undo.visit(plan_.members[member].member);
   found = look(member);

@@ -16,9 +16,14 @@ base::Result<Outcome> undo_newest(const SwitchOptions& how, const FleetTalk& tal
                                   ControllerClient& client, const std::string& edit) {
   base::Result<FatePage> page = client.fates();
   if (!page.ok()) return page.error();
-  talk.say(fates_text(*page));
+  talk.say(fates_text(*page) + losses_text(*page, ""));
   Outcome outcome;
   outcome.page = std::move(*page);
+  const bool allow_loss = (how.switch_flags & vm::kAllowLoss) != 0;
+  if (base::Status whole = check_losses(outcome.page, allow_loss); !whole.ok()) {
+    outcome.refused = whole.error();
+    return outcome;
+  }
   if (how.dry_run) return outcome;
   if (how.ask) {
     if (base::Status go = how.confirm(); !go.ok()) {
@@ -26,7 +31,9 @@ base::Result<Outcome> undo_newest(const SwitchOptions& how, const FleetTalk& tal
       return outcome;
     }
   }
-  base::Result<online_change::SwitchReport> report = client.undo(edit);
+  std::vector<std::string> ways;
+  if (outcome.page.loss_count != 0) ways = {vm::kWithLoss};
+  base::Result<online_change::SwitchReport> report = client.undo(edit, ways);
   if (!report.ok()) return report.error();
   outcome.report = *report;
   return outcome;

@@ -48,19 +48,57 @@ base::Result<LiveReport> LiveReport::take(vm::Controller& controller,
   LiveReport report(std::move(*copy), controller.verified());
   report.whole_ = whole || !change.keeps_all();
   if (next != nullptr) report.renamed_ = ir::under_new_names(report.image_.image(), *next);
-  report.losses_ = change.live_losses(report.copy_.memory());
-  report.loss_count_ = change.count_losses(report.copy_.memory());
-  for (size_t i = 0; i < report.losses_.size(); ++i) {
-    report.by_path_.emplace(ir::fold_name(report.losses_[i].path), i);
-  }
+  report.note_losses(change.live_losses(report.memory()), change.count_losses(report.memory()));
   return report;
+}
+
+void LiveReport::note_losses(std::vector<online_change::LiveLoss> losses, uint64_t count) {
+  losses_ = std::move(losses);
+  loss_count_ = count;
+  for (size_t i = 0; i < losses_.size(); ++i) {
+    by_path_.emplace(ir::fold_name(losses_[i].path), i);
+  }
+}
+
+base::Result<LiveReport> LiveReport::take_back(const vm::Controller& controller,
+                                               online_change::Change& change, size_t below,
+                                               const CopyRanges& copy_of) {
+  const bool code_alone = below == 0 && change.keeps_all();
+  const uint32_t size = controller.image().data_capacity;
+  base::Result<vm::LiveCopy> copy =
+      copy_of(code_alone ? change.looked_at() : std::vector<ir::DataRange>{{0, size}});
+  if (!copy.ok()) return copy.error();
+  LiveReport report(std::move(*copy), change.way_back(below).from);
+  if (code_alone) return report;
+  base::Result<vm::Memory> memory = vm::Memory::reserve();
+  if (!memory.ok()) return memory.error();
+  std::memcpy(memory->data(), report.copy_.memory().data(), size);
+  for (size_t i = 0; i < below; ++i) (void)change.imagine_undo(i, memory->data());
+  if (below != 0) {
+    base::Result<vm::Memory> undone = vm::Memory::reserve();
+    if (!undone.ok()) return undone.error();
+    const uint32_t undone_size = report.image().data_capacity;
+    std::memcpy(undone->data(), memory->data(), undone_size);
+    report.undone_ = std::move(*undone);
+  }
+  auto imagined = change.imagine_undo(below, memory->data());
+  report.note_losses(std::move(imagined.losses), imagined.loss_count);
+  report.before_ = std::move(*memory);
+  return report;
+}
+
+std::string LiveReport::value_back(const ir::Image& before, const std::string& path) const {
+  if (!before_) return {};
+  base::Result<ir::Symbol> symbol = ir::find_symbol(before, path);
+  if (!symbol.ok()) return {};
+  return online_change::shortened(ir::format_value(before, *symbol, before_->view()));
 }
 
 std::string LiveReport::value(const online_change::FateRow& row) const {
   const std::string& path = row.old_path.empty() ? row.path : row.old_path;
   base::Result<ir::Symbol> symbol = ir::find_symbol(image(), path);
   if (!symbol.ok()) return {};
-  return online_change::shortened(ir::format_value(image(), *symbol, copy_.memory()));
+  return online_change::shortened(ir::format_value(image(), *symbol, memory()));
 }
 
 const online_change::LiveLoss* LiveReport::loss(const std::string& path) const {
@@ -85,13 +123,13 @@ std::string LiveReport::result_of(const online_change::VariableFate& variable,
     if (there.ok() && there->input) return {};  // the plant says it
     initial_value(variable, next, value);
   } else if (const auto* converted = step->as<online_change::ConvertedValues>()) {
-    const uint8_t* source = copy_.memory().data() + variable.old_address;
+    const uint8_t* source = memory().data() + variable.old_address;
     const online_change::Conversions rules(image(), next);
     rules.convert(*converted, variable.index, source, variable.new_address, value);
   } else if (variable.gather != nullptr) {
     online_change::InitialData(next).read(variable.new_address, value);
-    online_change::gather(*variable.gather, copy_.memory().data(),
-                          variable.new_address - step->to, value);
+    online_change::gather(*variable.gather, memory().data(), variable.new_address - step->to,
+                          value);
   } else {
     return {};
   }
@@ -106,8 +144,8 @@ std::string LiveReport::result_of(const online_change::FateRow& row,
     return {};
   }
   const ir::Kind kind = next.types[there->type].kind;
-  const bool leaf = next.types.is_scalar(there->type) || kind == ir::Kind::kString ||
-                    kind == ir::Kind::kWstring;
+  const bool leaf =
+      next.types.is_scalar(there->type) || kind == ir::Kind::kString || kind == ir::Kind::kWstring;
   if (!leaf) return {};
   online_change::VariableFate variable;
   variable.path = row.path;
@@ -129,14 +167,14 @@ tools::FateLine LiveReport::line(const online_change::VariableFate& variable,
     if (const auto there = ir::find_symbol(image(), path); there.ok()) {
       before.bit_mask = there->bit_mask;
     }
-    out.live.now = online_change::shortened(ir::format_value(image(), before, copy_.memory()));
+    out.live.now = online_change::shortened(ir::format_value(image(), before, memory()));
   }
   out.live.after = result_of(variable, out.live.now, next);
   if (const online_change::LiveLoss* lost = loss(variable.path)) {
     out.live.loss = lost->what;
     if (!lost->new_value.empty()) out.live.after = lost->new_value;
   } else if (variable.loses) {
-    out.live.loss = why_lost(variable, image(), copy_.memory(), next);
+    out.live.loss = why_lost(variable, image(), memory(), next);
   }
   return out;
 }

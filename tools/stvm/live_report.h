@@ -25,6 +25,11 @@ class LiveReport {
   static base::Result<LiveReport> take(vm::Controller& controller,
                                        const online_change::Change& change, const ir::Image* next,
                                        bool whole, const CopyRanges& copy_of);
+  // Of the undo of the edit on trial that `below` others were made on top of: the values behind
+  // their undo, and what becomes of these.
+  static base::Result<LiveReport> take_back(const vm::Controller& controller,
+                                            online_change::Change& change, size_t below,
+                                            const CopyRanges& copy_of);
 
   // The value of the variable that the row is about, in the program that runs; "" when there is
   // none.
@@ -32,6 +37,9 @@ class LiveReport {
   // What it becomes by that step, which is for this row alone; "" for what is no single value.
   std::string result_of(const online_change::FateRow& row, const online_change::UpdateStep& step,
                         const ir::Image& next) const;
+  // By undo: what the variable of that name is then, in the version before; "" for what is the same
+  // as now, or not known.
+  std::string value_back(const ir::Image& before, const std::string& path) const;
   // The first of them, and how many there are.
   const std::vector<online_change::LiveLoss>& losses() const { return losses_; }
   uint64_t loss_count() const { return loss_count_; }
@@ -39,6 +47,8 @@ class LiveReport {
   const online_change::LiveLoss* loss(const std::string& path) const;
   // The line of one variable: its value, what it becomes and what is lost.
   tools::FateLine line(const online_change::VariableFate& variable, const ir::Image& next) const;
+  // What runs; by undo, the version that the edit made.
+  const ir::VerifiedImage& version() const { return image_; }
   // The image of the program that runs, under the names of the next version.
   const ir::Image& image() const { return renamed_ ? *renamed_ : image_.image(); }
 
@@ -49,7 +59,12 @@ class LiveReport {
   std::string result_of(const online_change::VariableFate& variable, const std::string& now,
                         const ir::Image& next) const;
 
+  std::span<const uint8_t> memory() const { return undone_ ? undone_->view() : copy_.memory(); }
+  void note_losses(std::vector<online_change::LiveLoss> losses, uint64_t count);
+
   vm::LiveCopy copy_;
+  std::optional<vm::Memory> undone_;  // behind the undo of edits above; none: copy_
+  std::optional<vm::Memory> before_;  // behind that of the edit itself
   ir::VerifiedImage image_;
   std::optional<ir::Image> renamed_;  // the same under the names of the next version
   std::vector<online_change::LiveLoss> losses_;

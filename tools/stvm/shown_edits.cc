@@ -4,7 +4,6 @@
 
 #include "tools/common/all_system_edits.h"
 #include "tools/common/source_edits.h"
-#include "tools/stvm/force_edits.h"
 
 namespace stvm {
 namespace {
@@ -33,15 +32,9 @@ std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids
   return text;
 }
 
-tools::SystemEdits shown_system(const vm::Controller& controller,
-                                const ir::VerifiedImage& new_image,
-                                const vm::ForcedSet& next_forces, bool back) {
-  const ir::VerifiedImage& old_image = controller.verified();
-  tools::SystemEdits edits =
-      force_edits(old_image.image(), controller.forces(), new_image.image(), next_forces);
-  for (auto& edit : tools::all_system_edits(old_image, new_image, back)) {
-    edits.push_back(std::move(edit));
-  }
+tools::SystemEdits shown_system(const ir::VerifiedImage& old_image,
+                                const ir::VerifiedImage& new_image, bool back) {
+  tools::SystemEdits edits = tools::all_system_edits(old_image, new_image, back);
   for (auto& edit : tools::source_edits(old_image.encoded(), new_image.encoded())) {
     edits.push_back(std::move(edit));
   }

@@ -6,15 +6,13 @@
 
 #include "ir/bytecode/verify.h"
 #include "tools/common/fate_report.h"
-#include "vm/runtime/controller.h"
 
 namespace stvm {
 
 tools::PouEdits shown_edits(const ir::VerifiedImage& old_image, const ir::VerifiedImage& new_image);
-// Forces first. The last row says how many are left out. `next_forces`: Change::next_forces().
-tools::SystemEdits shown_system(const vm::Controller& controller,
-                                const ir::VerifiedImage& new_image,
-                                const vm::ForcedSet& next_forces, bool back);
+// The last row says how many are left out. `back`: by undo.
+tools::SystemEdits shown_system(const ir::VerifiedImage& old_image,
+                                const ir::VerifiedImage& new_image, bool back);
 
 // "Main.pump, Main.tank and 3 more": of an image, by their numbers.
 std::string instances_text(const ir::Image& image, std::span<const uint32_t> ids);

@@ -7,7 +7,6 @@
 #include "ir/bytecode/no_program.h"
 #include "tools/common/change_settings.h"
 #include "tools/common/json.h"
-#include "tools/common/table.h"
 #include "tools/stvm/commands.h"
 #include "tools/stvm/fate_view.h"
 #include "tools/stvm/package_making.h"
@@ -18,33 +17,10 @@
 namespace stvm {
 namespace {
 
-std::string losses_text(const FatePage& page) {
-  if (page.loss_count == 0) return {};
-  std::string out = "\n" + std::to_string(page.loss_count) + " live value(s) would be lost:\n";
-  tools::Table table({"variable", "now", "after", "what"});
-  for (const LossLine& line : page.losses) {
-    table.row({line.loss.path, line.loss.old_value, line.loss.new_value, line.loss.what});
-  }
-  out += table.text();
-  const uint64_t more = page.loss_count - std::min<uint64_t>(page.loss_count, page.losses.size());
-  return more == 0 ? out : out + "and " + std::to_string(more) + " more (--all shows each)\n";
-}
-
-void losses_json(const FatePage& page, tools::JsonWriter& json) {
-  json.field("loss_count", page.loss_count).key("losses").begin_array();
-  for (const LossLine& line : page.losses) {
-    json.begin_object().field("variable", line.loss.path).field("live", line.loss.old_value);
-    json.field("after", line.loss.new_value).field("what", line.loss.what).end_object();
-  }
-  json.end_array();
-}
-
 // What stands between the report and the switch.
 base::Status may_switch(const SwitchOptions& options, const FatePage& page) {
-  if (page.loss_count != 0 && (options.switch_flags & vm::kAllowLoss) == 0) {
-    return base::Error{base::Refusal::kWouldLose,
-                       std::to_string(page.loss_count) + " live value(s) would be lost"};
-  }
+  base::Status whole = check_losses(page, (options.switch_flags & vm::kAllowLoss) != 0);
+  if (!whole.ok()) return whole;
   if (!options.ask || options.dry_run) return base::Ok{};
   if (options.confirm) return options.confirm();
   return ask("Switch now?", "not switched; the old program runs on");
@@ -213,7 +189,7 @@ base::Result<Outcome> bring_staged(const SwitchOptions& options, ControllerClien
   if (!options.json) {
     if (options.all) std::printf("%s\n", tools::every_fate_text(outcome.every).c_str());
     std::string report = fates_text(outcome.page);
-    std::fputs((report + losses_text(outcome.page)).c_str(), stdout);
+    std::fputs((report + losses_text(outcome.page, " (--all shows each)")).c_str(), stdout);
     for (const std::string& note : outcome.exchange) std::printf("exchange: %s\n", note.c_str());
     std::fflush(stdout);
   }

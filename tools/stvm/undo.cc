@@ -18,7 +18,7 @@ namespace {
 
 constexpr tools::OptionRow kUndoOptions[] = {
     {"--only", nullptr, "take back this edit alone: those that were made later stay"},
-    {"--allow-loss", nullptr, "with --only: even if live values are lost, as the report says"},
+    {"--allow-loss", nullptr, "undo even if live values are lost, as the report says"},
     {"--allow-overrun", nullptr, "with --only: even if a task may be delayed"},
     {"--sign", "KEY", "with --only: sign it for a controller with keys"},
     {"--skip-exit", nullptr, "do not run FB_Exit of what goes: one that traps keeps the edit"},
@@ -106,49 +106,80 @@ base::Error behind(const Names& done, const base::Error& error) {
                              (done.size() == 1 ? "is" : "are") + " undone"};
 }
 
+// What has been shown already is refused without being shown again.
+struct Ended {
+  base::Status status = base::Ok{};
+  bool shown = false;
+};
+
 struct Undone {
   std::string edit;
   FatePage page;
   std::optional<online_change::SwitchReport> report;
 };
 
-struct UndoOptions {
-  bool dry_run = false;
-  bool json = false;
-  bool ask = false;  // after the report
-  std::string way_back = {};
-};
-
-base::Result<Undone> undo_one(ControllerClient& client, const std::string& name,
-                              const UndoOptions& how) {
-  base::Result<vm::StatusReport> status = client.status();
+// What the undo of each does, behind that of those before it.
+base::Result<std::vector<Undone>> reports(ControllerClient& client, const Names& going,
+                                          const std::string& way_back) {
+  base::Result<vm::StatusReport> status = client.status();  // which version runs
   if (!status.ok()) return status.error();
-  base::Result<FatePage> page = client.fates(how.way_back);
-  if (!page.ok()) return page.error();
-  Undone out{name, std::move(*page), std::nullopt};
-  if (!how.json) std::fputs(fates_text(out.page).c_str(), stdout);
-  if (how.dry_run) return out;
-  if (how.ask) {
-    std::fflush(stdout);
-    base::Status go = ask("Take it back now?", "not undone; the program on trial runs on");
-    if (!go.ok()) return go.error();
+  std::vector<Undone> all;
+  for (const std::string& name : going) {
+    base::Result<FatePage> page = client.fates(way_back, all.empty() ? "" : name);
+    if (!page.ok()) return page.error();
+    all.push_back({name, std::move(*page), std::nullopt});
   }
-  base::Result<online_change::SwitchReport> report = client.undo(name, how.way_back);
-  if (!report.ok()) return report.error();
-  out.report = *report;
-  if (!how.json) std::fputs(switch_text((name + " undone").c_str(), *report).c_str(), stdout);
-  return out;
+  return all;
+}
+
+void print_text(const std::vector<Undone>& all) {
+  for (const Undone& undone : all) {
+    if (all.size() != 1) std::printf("undo of %s\n", undone.edit.c_str());
+    std::fputs((fates_text(undone.page) + losses_text(undone.page, "")).c_str(), stdout);
+    if (all.size() != 1) std::puts("");
+  }
+  std::fflush(stdout);
+}
+
+base::Status check_losses(const std::vector<Undone>& all, bool allowed) {
+  for (const Undone& undone : all) {
+    base::Status whole = check_losses(undone.page, allowed);
+    if (whole.ok()) continue;
+    return base::Error{whole.error().refusal, "undo of " + undone.edit + ": " + whole.error().text +
+                                                  ", which --allow-loss allows"};
+  }
+  return base::Ok{};
+}
+
+// One after the other, each at a boundary of its own.
+base::Status carry_out(ControllerClient& client, std::vector<Undone>& all,
+                       const std::vector<std::string>& ways, bool json) {
+  Names done;
+  for (Undone& undone : all) {
+    if (!done.empty()) {
+      base::Result<vm::StatusReport> status = client.status();
+      if (!status.ok()) return behind(done, status.error());
+    }
+    base::Result<online_change::SwitchReport> report = client.undo(undone.edit, ways);
+    if (!report.ok()) return behind(done, report.error());
+    undone.report = *report;
+    done.push_back(undone.edit);
+    if (!json) std::fputs(switch_text((undone.edit + " undone").c_str(), *report).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  return base::Ok{};
 }
 
 void undone_json(const Undone& undone, tools::JsonWriter& out) {
   out.field("edit", undone.edit);
   fates_json(undone.page, out);
+  losses_json(undone.page, out);
   out.field("undone", undone.report.has_value());
   if (undone.report) switch_json(*undone.report, out);
 }
 
 // One edit is an object, several are a list of them.
-void print_json(const std::vector<Undone>& all, const Names& going) {
+void print_json(const std::vector<Undone>& all, const Names& going, const base::Status& ended) {
   tools::JsonWriter out;
   out.begin_object();
   if (going.size() == 1) {
@@ -164,21 +195,27 @@ void print_json(const std::vector<Undone>& all, const Names& going) {
   }
   out.key("going").begin_array();
   for (const std::string& name : going) out.value(name);
-  out.end_array().end_object();
+  out.end_array();
+  if (!ended.ok()) {
+    out.field("refused", base::refusal_code(ended.error().refusal));
+    out.field("message", ended.error().text);
+  }
+  out.end_object();
   std::fputs(out.finish().c_str(), stdout);
 }
 
-base::Status undo_only(const tools::Options& options, ControllerClient& client,
-                       const Edits& edits) {
+base::Status check_only(const tools::Options& options) {
   if (options.arguments().size() != 1) {
     return base::Error{base::Refusal::kUsage, "undo --only: name one edit"};
   }
-  if (options.has("--skip-exit")) {
-    return base::Error{
-        base::Refusal::kUsage,
-        "undo --only is a change, whose FB_Exit runs; without --only the edits above "
-        "go too, and can be brought again"};
-  }
+  if (!options.has("--skip-exit")) return base::Ok{};
+  return base::Error{base::Refusal::kUsage,
+                     "undo --only is a change, whose FB_Exit runs; without --only the edits above "
+                     "go too, and can be brought again"};
+}
+
+Ended undo_only(const tools::Options& options, ControllerClient& client, const Edits& edits) {
+  if (base::Status fits = check_only(options); !fits.ok()) return {fits};
   SwitchOptions how;
   how.sign = options.text("--sign");
   how.dry_run = options.has("--dry-run");
@@ -188,46 +225,46 @@ base::Status undo_only(const tools::Options& options, ControllerClient& client,
   how.switch_flags = (options.has("--allow-loss") ? vm::kAllowLoss : 0u) |
                      (options.has("--allow-overrun") ? vm::kAllowOverrun : 0u);
   base::Result<Outcome> outcome = take_out(how, client, options.arguments()[0], edits.on_trial);
-  if (!outcome.ok()) return outcome.error();
+  if (!outcome.ok()) return {outcome.error()};
   print(how, *outcome);
-  return outcome->refused ? base::Status(*outcome->refused) : base::Ok{};
+  return {outcome->refused ? base::Status(*outcome->refused) : base::Ok{}, true};
 }
 
-base::Status undo_edits(const tools::Options& options) {
+Ended undo_edits(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  if (!json.ok()) return {json.error()};
   base::Result<ControllerClient> client = ControllerClient::connect(options);
-  if (!client.ok()) return client.error();
+  if (!client.ok()) return {client.error()};
   base::Result<Edits> edits = edits_of(*client);
-  if (!edits.ok()) return edits.error();
+  if (!edits.ok()) return {edits.error()};
   if (edits->on_trial.empty()) {
-    return base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"};
+    return {base::Error{base::Refusal::kNothingToUndo, "there is no change in trial to undo"}};
   }
   if (options.has("--only")) return undo_only(options, *client, *edits);
   const Names& named = options.arguments();
   base::Result<Names> going = up_to(edits->on_trial, named, "is on trial");
-  if (!going.ok()) return going.error();
+  if (!going.ok()) return {going.error()};
   const bool dry_run = options.has("--dry-run");
   const bool may_ask = !dry_run && !options.has("--yes");
-  base::Status may = ask_about(*going, named, may_ask);
-  if (!may.ok()) return may;
+  std::vector<std::string> ways;
+  if (options.has("--skip-exit")) ways.push_back(vm::kWithoutExit);
+  base::Result<std::vector<Undone>> all =
+      reports(*client, *going, ways.empty() ? "" : ways.front());
+  if (!all.ok()) return {all.error()};
+  if (!*json) print_text(*all);
+  const bool allow_loss = options.has("--allow-loss");
+  const bool loses = !check_losses(*all, false).ok();
+  base::Status ended = check_losses(*all, allow_loss);
+  if (ended.ok()) ended = ask_about(*going, named, may_ask);
   // A script that takes a change back is not held up for want of a person.
   const bool ask_first = may_ask && can_ask() && !more_go(*going, named);
-  const std::string way_back = options.has("--skip-exit") ? vm::kWithoutExit : "";
-  std::vector<Undone> all;
-  Names done;
-  base::Status ended = base::Ok{};
-  for (const std::string& name : *going) {
-    const UndoOptions how{dry_run, *json, ask_first && done.empty(), way_back};
-    base::Result<Undone> undone = undo_one(*client, name, how);
-    if (!undone.ok()) ended = behind(done, undone.error());
-    if (!undone.ok()) break;
-    all.push_back(std::move(*undone));
-    if (dry_run) break;  // what the next one does depends on what this one leaves
-    done.push_back(name);
+  if (ended.ok() && ask_first) {
+    ended = ask("Take it back now?", "not undone; the program on trial runs on");
   }
-  if (*json && !all.empty()) print_json(all, *going);
-  return ended;
+  if (allow_loss && loses) ways.push_back(vm::kWithLoss);
+  if (ended.ok() && !dry_run) ended = carry_out(*client, *all, ways, *json);
+  if (*json) print_json(*all, *going, ended);
+  return {ended, true};
 }
 
 SwitchOptions redo_options(const tools::Options& options, bool json) {
@@ -240,32 +277,32 @@ SwitchOptions redo_options(const tools::Options& options, bool json) {
   return how;
 }
 
-base::Status redo_edits(const tools::Options& options) {
+Ended redo_edits(const tools::Options& options) {
   base::Result<bool> json = wants_json(options);
-  if (!json.ok()) return json.error();
+  if (!json.ok()) return {json.error()};
   base::Result<ControllerClient> client = ControllerClient::connect(options);
-  if (!client.ok()) return client.error();
+  if (!client.ok()) return {client.error()};
   base::Result<Edits> edits = edits_of(*client);
-  if (!edits.ok()) return edits.error();
+  if (!edits.ok()) return {edits.error()};
   if (edits->undone.empty()) {
-    return base::Error{base::Refusal::kNothingToUndo,
-                       "no edit was undone that could be brought again"};
+    return {base::Error{base::Refusal::kNothingToUndo,
+                        "no edit was undone that could be brought again"}};
   }
   base::Result<Names> coming = up_to(edits->undone, options.arguments(), "was undone");
-  if (!coming.ok()) return coming.error();
+  if (!coming.ok()) return {coming.error()};
   const SwitchOptions how = redo_options(options, *json);
   for (const std::string& name : *coming) {
     base::Result<vm::StatusReport> status = client->status();
-    if (!status.ok()) return status.error();
+    if (!status.ok()) return {status.error()};
     base::Status staged = client->stage_again(name);
-    if (!staged.ok()) return staged;
+    if (!staged.ok()) return {staged};
     if (!*json) std::printf("%s again\n", name.c_str());
     base::Result<Outcome> outcome = bring_staged(how, *client);
-    if (!outcome.ok()) return outcome.error();
+    if (!outcome.ok()) return {outcome.error()};
     print(how, *outcome);
-    if (outcome->refused) return *outcome->refused;
+    if (outcome->refused) return {*outcome->refused, true};
   }
-  return base::Ok{};
+  return {};
 }
 
 base::Status accept_edits(const tools::Options& options) {
@@ -288,13 +325,14 @@ base::Status accept_edits(const tools::Options& options) {
   return base::Ok{};
 }
 
-int exit_code_of(const base::Status& status) {
-  return status.ok() ? tools::kOk : refuse(status.error());
+int exit_code_of(const Ended& ended) {
+  if (ended.status.ok()) return tools::kOk;
+  return ended.shown ? refuse_reported(ended.status.error()) : refuse(ended.status.error());
 }
 
 int undo(const tools::Options& options) { return exit_code_of(undo_edits(options)); }
 int redo(const tools::Options& options) { return exit_code_of(redo_edits(options)); }
-int accept(const tools::Options& options) { return exit_code_of(accept_edits(options)); }
+int accept(const tools::Options& options) { return exit_code_of({accept_edits(options)}); }
 
 }  // namespace
 

@@ -67,6 +67,8 @@ inline constexpr const char* kEveryVariable = "every";
 // As the name of a request for the fates of the way back, and after the edit in one for undo:
 // FB_Exit of what goes does not run.
 inline constexpr const char* kWithoutExit = "without FB_Exit";
+// So does this: values that do not fit their old type again are converted all the same.
+inline constexpr const char* kWithLoss = "with loss";
 
 struct Request {
   Command command = Command::kStatus;

@@ -175,7 +175,7 @@ complete -c stvm -n '__fish_seen_subcommand_from edits' -l format -x -a 'text js
 complete -c stvm -n '__fish_seen_subcommand_from edits' -l quiet -s q -d 'print only what --format asks for; errors and the exit code stay'
 complete -c stvm -n '__fish_seen_subcommand_from edits' -l color -x -a 'auto always never' -d 'auto (default), always or never; $NO_COLOR and $CLICOLOR_FORCE say it for all commands'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l only -d 'take back this edit alone: those that were made later stay'
-complete -c stvm -n '__fish_seen_subcommand_from undo' -l allow-loss -d 'with --only: even if live values are lost, as the report says'
+complete -c stvm -n '__fish_seen_subcommand_from undo' -l allow-loss -d 'undo even if live values are lost, as the report says'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l allow-overrun -d 'with --only: even if a task may be delayed'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l sign -x -d 'with --only: sign it for a controller with keys'
 complete -c stvm -n '__fish_seen_subcommand_from undo' -l skip-exit -d 'do not run FB_Exit of what goes: one that traps keeps the edit'

@@ -43,7 +43,7 @@ base::Status Engine::unforce(const std::string&) { return unsupported("unforce")
 base::Result<std::vector<std::string>> Engine::change(const Program&, bool) {
   return unsupported("change");
 }
-base::Status Engine::undo() { return unsupported("undo"); }
+base::Result<std::vector<std::string>> Engine::undo(bool) { return unsupported("undo"); }
 base::Status Engine::accept() { return unsupported("accept"); }
 
 }  // namespace golden

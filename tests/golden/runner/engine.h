@@ -49,7 +49,7 @@ class Engine {
   virtual base::Status restart(Restart kind) = 0;
   // Online change; the lines of its report.
   virtual base::Result<std::vector<std::string>> change(const Program& next, bool allow_loss);
-  virtual base::Status undo();
+  virtual base::Result<std::vector<std::string>> undo(bool allow_loss);
   virtual base::Status accept();
   // Releases that found their task still running or were passed by, and such that a change or an
   // undo has delayed.

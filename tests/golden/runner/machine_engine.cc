@@ -1,5 +1,6 @@
 #include "tests/golden/runner/machine_engine.h"
 
+#include <cstring>
 #include <utility>
 
 #include "ir/bytecode/symbols.h"
@@ -83,6 +84,15 @@ vm::TierOptions tier_options(Tier tier) {
   return out;
 }
 
+std::vector<std::string> loss_texts(const std::vector<online_change::LiveLoss>& losses) {
+  std::vector<std::string> lines;
+  for (const online_change::LiveLoss& loss : losses) {
+    std::string becomes = loss.new_value.empty() ? "" : " -> " + loss.new_value;
+    lines.push_back("loss " + loss.path + ": " + loss.old_value + becomes + " " + loss.what);
+  }
+  return lines;
+}
+
 class MachineEngine : public Engine {
  public:
   MachineEngine(Tier tier, const Program& program) : tier_(tier), program_(&program) {}
@@ -159,10 +169,7 @@ class MachineEngine : public Engine {
     for (const online_change::FateRow& row : change_->plan().fates) {
       lines.push_back(fate_text(row));
     }
-    for (const online_change::LiveLoss& loss : change_->live_losses()) {
-      std::string becomes = loss.new_value.empty() ? "" : " -> " + loss.new_value;
-      lines.push_back("loss " + loss.path + ": " + loss.old_value + becomes + " " + loss.what);
-    }
+    for (std::string& line : loss_texts(change_->live_losses())) lines.push_back(std::move(line));
     base::Status armed = arm(allow_loss);
     if (!armed.ok()) {
       change_->cancel();
@@ -175,16 +182,27 @@ class MachineEngine : public Engine {
     hard_packages_.clear();
     return lines;
   }
-  base::Status undo() override {
-    if (base::Status primed = change_->prime(); !primed.ok()) return primed;
-    base::Result<online_change::SwitchReport> report = watched(change_->undo());
+  // With the losses of its report.
+  base::Result<std::vector<std::string>> undo(bool allow_loss) override {
+    if (base::Status primed = change_->prime(); !primed.ok()) return primed.error();
+    std::vector<std::string> lines;
+    if (change_->on_trial() != 0) {
+      base::Result<vm::Memory> copy = vm::Memory::reserve();
+      if (!copy.ok()) return copy.error();
+      std::memcpy(copy->data(), controller_->memory().data(), controller_->image().data_capacity);
+      lines = loss_texts(change_->imagine_undo(0, copy->data()).losses);
+    }
+    const auto losses =
+        allow_loss ? online_change::Losses::kAllowed : online_change::Losses::kRefused;
+    base::Result<online_change::SwitchReport> report =
+        watched(change_->undo(online_change::Exits::kRun, losses));
     if (!report.ok()) return report.error();
     if (!previous_.empty()) {
       program_ = previous_.back();
       previous_.pop_back();
     }
     hard_packages_.clear();
-    return base::Ok{};
+    return lines;
   }
   base::Status accept() override { return change_->accept(); }
   uint64_t missed() const override { return controller_->missed_releases() + delayed_; }

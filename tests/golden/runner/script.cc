@@ -100,7 +100,7 @@ class Runner {
     } else if (verb == "change" && !args.empty()) {
       change(args, output);
     } else if (verb == "undo") {
-      note(engine_.undo(), output);
+      undo(!args.empty() && args[0] == "--allow-loss", output);
     } else if (verb == "restart" && args.size() == 1) {
       restart(args[0], output);
     } else if (verb == "accept") {
@@ -137,6 +137,12 @@ class Runner {
     } else {
       output.push_back("refused " + base::to_string(lines.error()));
     }
+  }
+
+  void undo(bool allow_loss, std::vector<std::string>& output) {
+    auto lines = engine_.undo(allow_loss);
+    if (!lines.ok()) return note(lines.error(), output);
+    output.insert(output.end(), lines->begin(), lines->end());
   }
 
   const TestFile& test_;

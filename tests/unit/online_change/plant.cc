@@ -139,7 +139,7 @@ base::Refusal Plant::refused(const std::string& source, bool allow_loss) {
 
 void Plant::undo() {
   EXPECT_TRUE(change_->prime().ok());
-  auto report = change_->undo();
+  auto report = change_->undo(online_change::Exits::kRun, online_change::Losses::kAllowed);
   EXPECT_TRUE(report.ok()) << base::to_string(report.error());
 }
 
