@@ -244,3 +244,20 @@ expect 2 stvm fleet status x.fleet --dir one --dir one
 said 'two controllers are called .one.'
 mistake '[controllers.a]\nname = 3\ndir = "x"\n' 'bad.toml:2:8: .*a text is wanted'
 mistake '[controllers.a]\ngroup = "x"\n' '.group. is not known'
+
+# E2: --matching takes what fits, and where nothing does, it is refused as `status` says it.
+pid() { # pid STEP
+  cat <<ST
+FUNCTION_BLOCK Pid VAR n : INT; END_VAR n := n + $1; END_FUNCTION_BLOCK
+PROGRAM Main VAR p : Pid; END_VAR p(); END_PROGRAM
+ST
+}
+pid 1 >pid_1.st
+pid 2 >pid_2.st
+pid 5 >pid_5.st
+expect 0 stc fleet pid_1.st pid_2.st -o pid.fleet
+serve apart pid_5.st
+expect 7 stvm fleet status pid.fleet --dir apart
+said 'R0320: Pid is different'
+expect 7 stvm fleet change pid.fleet --dir apart --matching --yes --allow-overrun
+said '^apart +.* refused +0 of 1 +R0320: Pid is different$'

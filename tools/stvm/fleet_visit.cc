@@ -93,15 +93,18 @@ base::Status check_parts(const FleetEdit& edit, const std::vector<ir::Part>& her
                          const base::Status& table, FleetRow& row) {
   row.parts = ir::part_edits(edit.parts.original, edit.parts.edited, here);
   bool all = true;
+  bool any = false;
   std::string others;
   for (const ir::PartEdit& part : row.parts) {
     all = all && part.state == ir::PartState::kHasIt;
-    if (part.state == ir::PartState::kOk || part.state == ir::PartState::kHasIt) continue;
+    const bool fits = part.state == ir::PartState::kOk || part.state == ir::PartState::kHasIt;
+    any = any || fits;
+    if (fits) continue;
     others += (others.empty() ? "" : ", ") + part.name + " is " +
               std::string(tools::part_state_name(part.state));
   }
   row.outcome = all ? FleetOutcome::kHadIt : FleetOutcome::kPossible;
-  const bool fit = others.empty() || edit.matching;
+  const bool fit = others.empty() || (edit.matching && any);
   if (fit) return all ? base::Status(base::Ok{}) : table;
   if (!table.ok()) others += "; " + table.error().text;
   return base::Error{base::Refusal::kOtherPart, others};
