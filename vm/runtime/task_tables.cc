@@ -158,6 +158,9 @@ void TaskTables::adopt(TaskTables& previous, int64_t cycle_start_ns) {
       keep_inputs(slot, old);
     }
   }
+  // Tasks come and go, some of them with counters from before: the sum goes on.
+  missed_before = 0;
+  missed_before = previous.missed_releases() - missed_releases();
   set_base_period();
 }
 
@@ -188,7 +191,7 @@ void TaskTables::compare_outputs(TaskTables& a, TaskTables& b) {
 }
 
 uint64_t TaskTables::missed_releases() const {
-  uint64_t missed = 0;
+  uint64_t missed = missed_before;
   for (const TaskSlot& task : tasks) missed += task.status.missed;
   return missed;
 }

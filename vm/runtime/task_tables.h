@@ -77,6 +77,7 @@ struct TaskTables {
   void forget_times() {
     for (TaskSlot& task : tasks) *task.times = TaskHistory();
   }
+  // Since the start, also those of tasks that a change took away.
   uint64_t missed_releases() const;
   uint64_t load() const;  // Controller::load()
   // Greatest common divisor of periods and phases: every release falls on a cycle (B1).
@@ -97,6 +98,7 @@ struct TaskTables {
   const CodeTable* code;                      // what its executions run: that, or one in its place
   ir::VerifiedImage version;    // outlives the generation, which its owner may drop at any time
   std::vector<TaskSlot> tasks;  // as in the image
+  uint64_t missed_before = 0;   // modulo 2^64: what their counters do not have of the missed ones
   std::vector<uint32_t> by_priority;  // highest first, then as declared
   int64_t base_period_ns = 0;
   ir::Schedule schedule = ir::Schedule::kSendFirst;

@@ -71,5 +71,22 @@ TEST_F(Missed, C5_AnUndoTellsTheReleasesThatItMadeLate) {
   EXPECT_EQ(report.missed, missed() - before);
 }
 
+// A task under another name counts from 0, and one that comes back has what it had.
+TEST_F(Missed, X1_ATaskThatGoesTakesNoMissedReleasesWithIt) {
+  stall();
+  std::string renamed = source("DINT");
+  for (size_t at; (at = renamed.find("Fast")) != std::string::npos;) renamed.replace(at, 4, "Slow");
+  EXPECT_TRUE(plc_.stage(build(renamed, &plc_.controller().image())).ok());
+  const uint64_t before = missed();
+  EXPECT_EQ(report_of(vm::Command::kSwitch, vm::kAllowLoss | vm::kAllowOverrun).missed,
+            missed() - before);
+  EXPECT_GE(missed(), before);
+  EXPECT_LT(missed(), before + 100);
+  stall();
+  const uint64_t before_undo = missed();
+  EXPECT_LT(report_of(vm::Command::kUndo, 0).missed, 3u);
+  EXPECT_LT(missed(), before_undo + 3);
+}
+
 }  // namespace
 }  // namespace plc
