@@ -245,7 +245,7 @@ said 'two controllers are called .one.'
 mistake '[controllers.a]\nname = 3\ndir = "x"\n' 'bad.toml:2:8: .*a text is wanted'
 mistake '[controllers.a]\ngroup = "x"\n' '.group. is not known'
 
-# E2: --matching takes what fits, and where nothing does, it is refused as `status` says it.
+# E-13: --matching takes what fits, and where nothing does, it is refused as `status` says it.
 pid() { # pid STEP
   cat <<ST
 FUNCTION_BLOCK Pid VAR n : INT; END_VAR n := n + $1; END_FUNCTION_BLOCK

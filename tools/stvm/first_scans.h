@@ -13,4 +13,8 @@ namespace stvm {
 // cannot be asked says nothing.
 base::Status first_scans(ControllerClient& client);
 
+// Likewise behind an undo, which nothing takes back: kFault, with the trap, where one of cycle
+// `from` or later stops a task or all of them.
+base::Status first_scans_back(ControllerClient& client, uint64_t from);
+
 }  // namespace stvm

@@ -54,16 +54,20 @@ void print_tier(const vm::StatusReport& report) {
   }
 }
 
-void print_versions(const vm::StatusReport& report) {
+void print_versions(const vm::StatusReport& report, bool undone) {
   const char* state = report.faulted ? "FAULT" : on_trial(report) ? "running, on trial" : "running";
   std::printf("%s: %s\n", report.name.c_str(), state);
   if (report.running == ir::no_program().digest()) {
     std::printf("  `stvm change SOURCES|IMAGE` brings a program\n");
   } else if (report.faulted) {
-    std::printf("  `stvm restart` runs it again; %s\n",
-                on_trial(report)
-                    ? "`stvm undo` brings back the program before, and its values"
-                    : "`stvm change` or `stvm revert` goes on with another program and the values");
+    std::printf(
+        "  `stvm restart` runs it again: RETAIN keeps its values, all else begins anew\n"
+        "  `stvm restart --hot` goes on with all values as they are\n"
+        "  %s\n",
+        on_trial(report)
+            ? "`stvm undo` brings back the program before, and its values"
+            : "`stvm change` or `stvm revert` goes on with another program and the values");
+    if (undone) std::printf("  `stvm redo` brings the edit again that was undone\n");
   }
   std::printf("  running     %s\n", base::short_hex(report.running).c_str());
   if (on_trial(report)) {
@@ -175,8 +179,9 @@ std::string state_text(const vm::TaskStatus& task) {
   return task.overruns == 0 ? "ok" : "overran";
 }
 
-void print_status_text(const vm::StatusReport& report) {
-  print_versions(report);
+// `undone`: there is an edit that redo brings again.
+void print_status_text(const vm::StatusReport& report, bool undone) {
+  print_versions(report, undone);
   print_memory(report.memory);
   tools::Table tasks({"task", "> period", "> prio", "> scans", "> missed", "> average", "> p99",
                       "> longest", "> delay", "state"});
@@ -318,7 +323,16 @@ base::Status show(const tools::Options& options) {
     std::fputs(activity_text(report->tasks).c_str(), stdout);
     return base::Ok{};
   }
-  (*json ? print_status_json : print_status_text)(*report);
+  if (*json) {
+    print_status_json(*report);
+    return base::Ok{};
+  }
+  bool undone = false;
+  if (report->faulted) {
+    const base::Result<std::vector<TrialEdit>> edits = client->edits();
+    undone = edits.ok() && std::ranges::any_of(*edits, &TrialEdit::undone);
+  }
+  print_status_text(*report, undone);
   return base::Ok{};
 }
 

@@ -8,6 +8,7 @@
 #include "tools/stvm/commands.h"
 #include "tools/stvm/controller_client.h"
 #include "tools/stvm/fate_view.h"
+#include "tools/stvm/first_scans.h"
 #include "tools/stvm/question.h"
 #include "tools/stvm/switch_steps.h"
 #include "tools/stvm/switch_text.h"
@@ -167,7 +168,7 @@ base::Status carry_out(ControllerClient& client, std::vector<Undone>& all,
     if (!json) std::fputs(switch_text((undone.edit + " undone").c_str(), *report).c_str(), stdout);
     std::fflush(stdout);
   }
-  return base::Ok{};
+  return first_scans_back(client, all.back().report->cycle_before);
 }
 
 void undone_json(const Undone& undone, tools::JsonWriter& out) {
@@ -299,6 +300,9 @@ Ended redo_edits(const tools::Options& options) {
     if (!*json) std::printf("%s again\n", name.c_str());
     base::Result<Outcome> outcome = bring_staged(how, *client);
     if (!outcome.ok()) return {outcome.error()};
+    if (outcome->report && (how.switch_flags & vm::kNoWayBack) == 0) {
+      if (base::Status stays = first_scans(*client); !stays.ok()) outcome->refused = stays.error();
+    }
     print(how, *outcome);
     if (outcome->refused) return {*outcome->refused, true};
   }
