@@ -6,6 +6,7 @@
 #include "frontend/lower/case_code.h"
 #include "frontend/lower/statements.h"
 #include "frontend/sema/constants/constants.h"
+#include "frontend/sema/expressions/operand_warnings.h"
 #include "frontend/sema/expressions/width.h"
 
 namespace frontend {
@@ -54,6 +55,7 @@ void CaseCode::case_statement(const Stmt& stmt) {
   }
   if (!type.valid() || !usable) type = elementary(ir::Kind::kDint);
   if (usable) type = computed_type(sema_, infer(stmt.value));
+  check_wrapped(*this, stmt.value, "compared");
   ir::ValueId selector = value(stmt.value, usable ? type : ir::TypeId());
   if (!usable) selector = code_.zero(type);
   std::vector<ir::BlockId> arms;

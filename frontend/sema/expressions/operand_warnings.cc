@@ -7,6 +7,7 @@
 #include "frontend/sema/calls/standard_calls.h"
 #include "frontend/sema/expressions/operators.h"
 #include "frontend/sema/expressions/value_range.h"
+#include "frontend/sema/expressions/width.h"
 
 namespace frontend {
 
@@ -167,13 +168,14 @@ void check_wrapped(const Phase& phase, ExprId operand, std::string_view used) {
   }
   if (!may_leave_type(phase, operand)) return;
   const std::string type = phase.sema().report.type_text(note.type);
-  phase.warning(DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
-                "the result is cut to `" + type + "` before it is " + std::string(used),
-                used == "divided"
-                    ? "convert an operand: (TO_DINT(a) + b) / c; where that has to be `" + type +
-                          "` again, the whole, too: TO_" + type + "((TO_DINT(a) + b) / c)"
-                    : "convert an operand, so that the operator has the width that is needed: "
-                      "TO_DINT(a)");
+  const std::string to_longer = is_small(phase.sema(), note) ? "TO_DINT(a)" : "TO_LINT(a)";
+  phase.warning(
+      DiagnosticCode::kCutBeforeUse, phase.sema().tree[operand].span,
+      "the result is cut to `" + type + "` before it is " + std::string(used),
+      used == "divided"
+          ? "convert an operand: (" + to_longer + " + b) / c; where that has to be `" + type +
+                "` again, the whole, too: TO_" + type + "((" + to_longer + " + b) / c)"
+          : "convert an operand, so that the operator has the width that is needed: " + to_longer);
 }
 
 }  // namespace frontend

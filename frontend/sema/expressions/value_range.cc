@@ -38,7 +38,7 @@ class Ranges {
   // As if nothing were cut off.
   Limits exact_of(ExprId id, int depth) {
     const Expr& expr = phase_.sema().tree[id];
-    const bool small = is_small(phase_.sema(), phase_.infer(id));
+    const bool small = has_wider(phase_.sema(), phase_.infer(id));
     if (expr.kind == ExprKind::kUnary && small) {
       const Limits in = of(expr.operand, depth + 1);
       if (expr.unary == UnaryOp::kNegate) return {-in.high, -in.low};
@@ -150,7 +150,9 @@ Limits range_of(const Phase& phase, ExprId id) { return Ranges(phase).of(id, 0);
 
 bool is_natural(const Phase& phase, ExprId id) {
   Ranges ranges(phase);
-  return (phase.infer(id).constant ? ranges.of(id, 0) : ranges.exact_of(id, 0)).low >= 0;
+  // What is wide is not cut to its type.
+  const bool wide = phase.infer(id).width == Width::kWide && !phase.infer(id).constant;
+  return (wide ? ranges.exact_of(id, 0) : ranges.of(id, 0)).low >= 0;
 }
 
 bool may_leave_type(const Phase& phase, ExprId id) {

@@ -9,17 +9,27 @@
 
 namespace frontend {
 
-bool is_small(const Sema& sema, const Note& note) {
-  if (note.flex != Flex::kNone || !note.type.valid()) return false;
+static uint32_t bytes_of_number(const Sema& sema, const Note& note) {
+  if (note.flex != Flex::kNone || !note.type.valid()) return 0;
   const ir::TypeTable& types = sema.program.types;
   const Traits traits = traits_of(types, note.type);
-  return (traits.integer || traits.bits) && ir::scalar_size(types.scalar(note.type)) < 4;
+  return traits.integer || traits.bits ? ir::scalar_size(types.scalar(note.type)) : 0;
+}
+
+bool is_small(const Sema& sema, const Note& note) {
+  const uint32_t bytes = bytes_of_number(sema, note);
+  return bytes != 0 && bytes < 4;
+}
+
+bool has_wider(const Sema& sema, const Note& note) {
+  const uint32_t bytes = bytes_of_number(sema, note);
+  return bytes != 0 && bytes < 8;
 }
 
 Width width_of(const Sema& sema, const Note& note, bool can_grow) {
-  if (!is_small(sema, note)) return Width::kOwn;
-  if (sema.options.dialect != Dialect::kIec) return Width::kWide;
-  return can_grow ? Width::kWraps : Width::kOwn;
+  const bool iec = sema.options.dialect == Dialect::kIec;
+  if (iec) return can_grow && has_wider(sema, note) ? Width::kWraps : Width::kOwn;
+  return is_small(sema, note) ? Width::kWide : Width::kOwn;
 }
 
 ir::TypeId computed_type(const Sema& sema, const Note& note) {
@@ -52,8 +62,9 @@ Note quotient_width(const Sema& sema, Note note, const Expr& expr, const Note& l
 
 // Of MOVE, SEL, MUX, MAX and their kin.
 static Width width_of_choice(const Phase& phase, const stdlib::FunctionRow& row,
-                             const std::vector<ExprId>& args) {
-  if (has_wide(phase, args)) return Width::kWide;
+                             const std::vector<ExprId>& args, const Note& note) {
+  if (phase.sema().options.dialect != Dialect::kIec)
+    return is_small(phase.sema(), note) && has_wide(phase, args) ? Width::kWide : Width::kOwn;
   const bool chooses =
       row.rule == stdlib::FunctionRule::kSelect || row.rule == stdlib::FunctionRule::kMux;
   const bool wraps = std::any_of(args.begin() + (chooses ? 1 : 0), args.end(),
@@ -76,7 +87,7 @@ Width standard_width(const Phase& phase, const stdlib::FunctionRow& row,
     case FunctionRule::kSelect:
     case FunctionRule::kMux:
     case FunctionRule::kExtreme:
-      return is_small(phase.sema(), note) ? width_of_choice(phase, row, args) : Width::kOwn;
+      return has_wider(phase.sema(), note) ? width_of_choice(phase, row, args, note) : Width::kOwn;
     case FunctionRule::kReal:
     case FunctionRule::kTrunc:
     case FunctionRule::kShift:
@@ -213,7 +224,8 @@ Note widened_by(const Phase& phase, Note note, ExprId operand, bool arithmetic) 
   if (!wider.valid()) return note;
   note.type = wider;
   const bool stays_wide = computed_as_dint && !arithmetic && is_small(phase.sema(), note);
-  note.width = stays_wide ? Width::kWide : Width::kOwn;
+  const bool wraps = note.width == Width::kWraps && has_wider(phase.sema(), note);
+  note.width = stays_wide ? Width::kWide : wraps ? Width::kWraps : Width::kOwn;
   return note;
 }
 

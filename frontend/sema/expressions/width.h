@@ -14,6 +14,8 @@ class Phase;
 
 // An integer or a bit string below 32 bits?
 bool is_small(const Sema& sema, const Note& note);
+// One below 64 bits? An operation on it could have been done in a longer type.
+bool has_wider(const Sema& sema, const Note& note);
 // The width of an operator's result, whose type is the note's. `can_grow`: it may leave that type.
 Width width_of(const Sema& sema, const Note& note, bool can_grow);
 // The type that code computes the expression in.
