@@ -1,13 +1,20 @@
 // What names in code mean.
 #include "frontend/questions/indexer.h"
+#include "frontend/sema/calls/positional.h"
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/objects/objects.h"
 #include "ir/types/address_text.h"
 
 namespace frontend::questions {
 
-void Indexer::visit(const Expr& expr, ExprId id, bool written) {
-  const Role role = written ? Role::kWritten : Role::kRead;
+static Role role_of(Use use) {
+  return use == Use::kBoth      ? Role::kReadWritten
+         : use == Use::kWritten ? Role::kWritten
+                                : Role::kRead;
+}
+
+void Indexer::visit(const Expr& expr, ExprId id, Use use) {
+  const Role role = role_of(use);
   switch (expr.kind) {
     case ExprKind::kName:
       add(expr.name.span, plain_name(expr, known(id)), role);
@@ -139,20 +146,56 @@ const PouInfo* Indexer::callee(const Expr& head) {
   return number == kNoPou ? nullptr : &sema_.declared.pous[number];
 }
 
+const PouInfo* Indexer::called_by(const Expr& call) {
+  const Note& head = known(call.operand);
+  const PouInfo* pou = head.type.valid() ? sema_.declared.pou_of(head.type) : nullptr;
+  return pou != nullptr ? pou : callee(tree_[call.operand]);
+}
+
+// What a pointer, an instance or an interface leads to is no part of it.
+bool Indexer::is_part(const Expr& expr) {
+  const ir::TypeId whole = known(expr.operand).type;
+  if (!whole.valid()) return true;
+  const ir::TypeTable& types = sema_.program.types;
+  return !types.is_reference(whole) && !types.is_instance(whole) && !is_interface(types, whole);
+}
+
+Use Indexer::use_by(const Expr& call, uint32_t argument) {
+  const Arg& arg = tree_.args[call.list.first + argument];
+  if (arg.output) return Use::kWritten;
+  const PouInfo* const pou = called_by(call);
+  if (pou == nullptr) return Use::kRead;
+  const Objects objects(sema_, scope_);
+  VarId parameter;
+  if (!arg.name.empty()) {
+    parameter = objects.find_parameter(*pou, arg.name.text);
+  } else {
+    const std::vector<VarId> parameters = positional_parameters(
+        sema_.declared, objects.variables_of(*pou), pou->result, call.list.count);
+    if (argument < parameters.size()) parameter = parameters[argument];
+  }
+  if (!parameter.valid()) return Use::kRead;
+  const Variable& variable = sema_.declared.variables[parameter.index];
+  if (variable.section == VarSection::kOutput) return Use::kWritten;
+  const bool may_write = variable.section == VarSection::kInOut && !variable.constant;
+  return may_write ? Use::kBoth : Use::kRead;
+}
+
 void Indexer::call_arguments(const Expr& call) {
   if (const Name box = tree_.name(call.number); !box.empty()) {
     add(box.span, declaration_named(sema_.namespaces.find(NameSort::kDeclaration, box)),
         Role::kRead);
   }
-  const Note& head = known(call.operand);
-  const PouInfo* pou = head.type.valid() ? sema_.declared.pou_of(head.type) : nullptr;
-  if (pou == nullptr) pou = callee(tree_[call.operand]);
+  const PouInfo* const pou = called_by(call);
   if (pou == nullptr) return;
   for (uint32_t i = 0; i < call.list.count; ++i) {
     const Arg& arg = tree_.args[call.list.first + i];
     if (arg.name.empty()) continue;
+    const bool both = use_by(call, i) == Use::kBoth;
     add(arg.name.span, variable_symbol(Objects(sema_, scope_).find_parameter(*pou, arg.name.text)),
-        arg.output ? Role::kRead : Role::kWritten);
+        arg.output ? Role::kRead
+        : both     ? Role::kReadWritten
+                   : Role::kWritten);
   }
 }
 

@@ -200,7 +200,7 @@ void Indexer::configuration(const ConfigDecl& config) {
         if (parameter != type->names.end()) {
           add(arg.name.span, variable_symbol(parameter->second), Role::kRead);
         }
-        expression(arg.value, arg.output);
+        expression(arg.value, arg.output ? Use::kWritten : Use::kRead);
       }
     }
   }

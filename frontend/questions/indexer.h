@@ -35,7 +35,9 @@ class Indexer : private Walker {
   VarId declared(const Name& name) const;
 
   // --- code (index_code.cc)
-  void visit(const Expr& expr, ExprId id, bool written) override;
+  void visit(const Expr& expr, ExprId id, Use use) override;
+  bool is_part(const Expr& expr) override;
+  Use use_by(const Expr& call, uint32_t argument) override;
   std::optional<Symbol> address(const Expr& expr);
   std::optional<Symbol> plain_name(const Expr& expr, const Note& note);
   std::optional<Symbol> member(const Expr& expr, const Note& note);
@@ -43,6 +45,7 @@ class Indexer : private Walker {
   std::optional<Symbol> declaration_named(std::string_view name);
   void call_arguments(const Expr& call);
   const PouInfo* callee(const Expr& head);
+  const PouInfo* called_by(const Expr& call);
   uint32_t block_before_dot(ExprId operand);
   const Note& known(ExprId id) { return sema_.facts.of(scope_, id); }
 

@@ -70,7 +70,7 @@ class Finder : private Walker {
       if (!decl.implied) expression(decl.init);
     }
   }
-  void visit(const Expr& expr, ExprId id, bool) override {
+  void visit(const Expr& expr, ExprId id, Use) override {
     if (!holds(expr.span)) return;
     if (expr.kind == ExprKind::kCall) called = name_in(tree_[expr.operand]);
     const Note& note = sema_.facts.of(scope_, id);

@@ -63,7 +63,7 @@ struct Symbol {
   ir::DirectAddress address;                 // kAddress, and of a variable AT %IX0.0
 };
 
-enum class Role : uint8_t { kDeclared, kRead, kWritten };
+enum class Role : uint8_t { kDeclared, kRead, kWritten, kReadWritten };
 
 struct Occurrence {
   base::SourceSpan span;

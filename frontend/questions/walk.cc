@@ -8,7 +8,7 @@ void Walker::statements(Range32 list) {
 
 void Walker::statement(const Stmt& stmt) {
   const bool writes = stmt.kind == StmtKind::kAssign || stmt.kind == StmtKind::kFor;
-  expression(stmt.target, writes);
+  expression(stmt.target, writes ? Use::kWritten : Use::kRead);
   expression(stmt.value);
   expression(stmt.from);
   expression(stmt.to);
@@ -34,7 +34,7 @@ void Walker::statement(const Stmt& stmt) {
 void Walker::chart(const Chart& chart) {
   for (const ChartStep& step : chart.steps) {
     for (const ActionUse& use : step.uses) {
-      expression(use.target, true);
+      expression(use.target, Use::kWritten);
       expression(use.time);
       for (const ExprId indicator : use.indicators) expression(indicator);
     }
@@ -50,24 +50,38 @@ void Walker::expressions(Range32 list) {
 void Walker::arguments(Range32 list) {
   for (uint32_t i = 0; i < list.count; ++i) {
     const Arg& arg = tree_.args[list.first + i];
-    expression(arg.value, arg.output);
+    expression(arg.value, arg.output ? Use::kWritten : Use::kRead);
+  }
+}
+
+Use Walker::use_by(const Expr& call, uint32_t argument) {
+  return tree_.args[call.list.first + argument].output ? Use::kWritten : Use::kRead;
+}
+
+void Walker::arguments(const Expr& call) {
+  for (uint32_t i = 0; i < call.list.count; ++i) {
+    expression(tree_.args[call.list.first + i].value, use_by(call, i));
   }
 }
 
 // Recursion is as deep as the parser lets expressions be (Expr::height).
-void Walker::expression(ExprId id, bool written) {
+void Walker::expression(ExprId id, Use use) {
   if (!id.valid()) return;
   const Expr& expr = tree_[id];
-  visit(expr, id, written);
+  visit(expr, id, use);
   switch (expr.kind) {
     case ExprKind::kCall:
+      expression(expr.operand);
+      arguments(expr);
+      return;
     case ExprKind::kStructInit:
       expression(expr.operand);
       arguments(expr.list);
       return;
+    case ExprKind::kMember:
     case ExprKind::kIndex:
     case ExprKind::kBit:
-      expression(expr.operand, written);
+      expression(expr.operand, is_part(expr) ? use : Use::kRead);
       if (expr.kind == ExprKind::kIndex) expressions(expr.list);
       return;
     case ExprKind::kArrayInit:
@@ -76,7 +90,7 @@ void Walker::expression(ExprId id, bool written) {
       expressions(expr.list);
       return;
     case ExprKind::kAssign:
-      expression(expr.operand, true);
+      expression(expr.operand, Use::kWritten);
       expression(expr.right);
       return;
     case ExprKind::kType:

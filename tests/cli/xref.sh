@@ -84,3 +84,30 @@ expect 2 stc xref addresses.st --name %MB15
 said 'nothing stands at %MB15'
 expect 0 stc xref addresses.st --name Start --format json
 said '"signature": ?"VAR_GLOBAL Start AT %IX0\.0 : BOOL"'
+
+# --- what is written: parts of structures and arrays, outputs; in-outs are both
+cat >uses.st <<'ST'
+TYPE Gauge : STRUCT a : INT; list : ARRAY[0..2] OF INT; END_STRUCT END_TYPE
+FUNCTION Bump : INT
+VAR_INPUT n : INT; END_VAR
+VAR_IN_OUT sum : INT; END_VAR
+VAR_OUTPUT old : INT; END_VAR
+old := sum; sum := sum + n; Bump := sum;
+END_FUNCTION
+PROGRAM Main
+VAR g : Gauge; p : POINTER TO Gauge; x, y, z, k : INT; END_VAR
+g.a := 3; g.list[k] := 4; y := g.a;
+p := ADR(g); p^.a := 5;
+k := Bump(1, x, y) + Bump(n := 1, sum := g.a, old => z);
+END_PROGRAM
+ST
+roles() {  # roles NAME: after the declaration
+  expect 0 stc xref uses.st --name "$1"
+  sed -n 's/^uses.st:[0-9:]*: //p' out | sed 1d | tr '\n' ' '
+}
+[ "$(roles Main.g)" = "written written read read read-write " ] || fail "a structure: $(cat out)"
+[ "$(roles Main.p)" = "written read " ] || fail "a pointer: $(cat out)"
+[ "$(roles Main.x)" = "read-write " ] || fail "an in-out without a name: $(cat out)"
+[ "$(roles Main.y)" = "written written " ] || fail "an output without a name: $(cat out)"
+[ "$(roles Gauge.a)" = "written read written read-write " ] || fail "a member: $(cat out)"
+[ "$(roles Bump.sum)" = "read written read read read-write " ] || fail "a parameter: $(cat out)"

@@ -90,7 +90,17 @@ base::Result<Answer> answer_of(const tools::Options& options, Questions& questio
 }
 
 const char* role_word(Role role) {
-  return role == Role::kDeclared ? "declared" : role == Role::kWritten ? "written" : "read";
+  switch (role) {
+    case Role::kDeclared:
+      return "declared";
+    case Role::kRead:
+      return "read";
+    case Role::kWritten:
+      return "written";
+    case Role::kReadWritten:
+      return "read-write";
+  }
+  return "";
 }
 
 std::string place_text(const base::SourceLocation& at) {
