@@ -61,8 +61,11 @@ std::string interval_text(std::string_view text) {
       number += c;
     } else {
       const bool known = time ? c == 'H' || c == 'M' || c == 'S' : c == 'D';
-      if (!known || number.empty()) return {};
-      out += number + static_cast<char>(c + ('a' - 'A'));
+      // Years and months have no length of their own, but may be none: P0Y0M0DT0.1S.
+      const bool none = !time && (c == 'Y' || c == 'M') && !number.empty() &&
+                        number.find_first_not_of('0') == std::string::npos;
+      if ((!known && !none) || number.empty()) return {};
+      if (!none) out += number + static_cast<char>(c + ('a' - 'A'));
       number.clear();
     }
   }

@@ -27,7 +27,7 @@ std::optional<Constant> Evaluation::evaluate(ExprId id, ir::TypeId context) {
   Note note = infer(id);
   const bool wide = note.width == Width::kWide;
   ir::TypeId type = without_range(
-      types(), wide ? computed_type(sema_, note) : ask<Values>().own_type(note, context));
+      types(), wide ? computed_type(sema_, note) : ask<Values>().own_type(id, context));
   if (types().is_scalar(type)) {
     ir::ValueId value = ask<Values>().emit(id, type);
     ir::Place result = temporary_place(type);

@@ -7,6 +7,7 @@
 #include "frontend/lower/references.h"
 #include "frontend/lower/value_code.h"
 #include "frontend/lower/values.h"
+#include "frontend/sema/calls/calls.h"
 #include "frontend/sema/constants/constants.h"
 #include "frontend/sema/declarations/variables.h"
 #include "frontend/sema/expressions/operand_warnings.h"
@@ -38,7 +39,21 @@ void warn_of_half_times(const Phase& phase, ir::TypeId from, ir::TypeId to, base
 
 }  // namespace
 
-ir::TypeId Values::own_type(const Note& note, ir::TypeId target) const {
+// SEL(q, 0, 1), MUX, MOVE and the like: literals that a BOOL has, where one is wanted.
+static bool chooses_literals(const Phase& phase, ExprId id) {
+  const Expr& expr = phase.sema().tree[id];
+  if (expr.kind != ExprKind::kCall) return false;
+  const Callee callee = phase.ask<Calls>().callee(expr);
+  if (callee.kind != Callee::Kind::kStandard) return false;
+  using stdlib::FunctionRule;
+  const FunctionRule rule = callee.row->rule;
+  return rule == FunctionRule::kSelect || rule == FunctionRule::kMux ||
+         rule == FunctionRule::kMove || rule == FunctionRule::kExtreme ||
+         rule == FunctionRule::kBitwise;
+}
+
+ir::TypeId Values::own_type(ExprId id, ir::TypeId target) {
+  const Note& note = infer(id);
   if (!target.valid()) return note.type;
   Traits traits = traits_of(types(), target);
   ir::TypeId plain = without_range(types(), target);
@@ -46,6 +61,7 @@ ir::TypeId Values::own_type(const Note& note, ir::TypeId target) const {
     case Flex::kNone:
       return signed_by_context(types(), note, target);
     case Flex::kInteger:
+      if (traits.boolean && chooses_literals(*this, id)) return plain;
       return traits.number() || traits.bits ? plain : note.type;
     case Flex::kReal:
       return traits.real ? plain : note.type;
@@ -77,7 +93,7 @@ ir::ValueId Values::value(ExprId id, ir::TypeId target) {
     set_line(expr.span);
     return bits ? build_.constant(scalar(target), *bits) : code_.zero(target);
   }
-  ir::TypeId own = own_type(note, target);
+  const ir::TypeId own = own_type(id, target);
   if (!types().is_scalar(own)) {
     error(DiagnosticCode::kTypeMismatch, expr.span,
           "`" + sema_.report.type_text(own) + "` does not go with `" +

@@ -17,7 +17,7 @@ class Values : public BodyPhase {
   ir::ValueId emit(ExprId expr, ir::TypeId own);
   ir::ValueId loaded(ExprId expr);  // what stands at its place
   ir::ValueId computed_in(ExprId id, ir::TypeId type);
-  ir::TypeId own_type(const Note& note, ir::TypeId target) const;
+  ir::TypeId own_type(ExprId id, ir::TypeId target);
   ir::ValueId emit_arithmetic(BinaryOp op, ExprId left, ExprId right, ir::TypeId own);
 
  private:

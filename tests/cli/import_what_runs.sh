@@ -129,6 +129,12 @@ task() {  # task KIND ATTRIBUTES
 }
 task Cyclic 'interval="PT0.01S"' >cyclic.xml
 runs cyclic.xml 3 P.n=3
+# xsd:duration with years and months, as a library of some language writes it
+task Cyclic 'interval="P0Y0M0DT0H0M0.01S"' >long.xml
+runs long.xml 3 P.n=3
+task Cyclic 'interval="P0Y1M0DT0H0M0.01S"' >month.xml
+expect 1 stc import month.xml -o month
+said 'interval `P0Y1M0DT0H0M0.01S` is no time'
 task Freewheeling '' >free.xml
 runs free.xml 3 P.n=3
 task Event '' >event.xml

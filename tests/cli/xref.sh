@@ -97,7 +97,7 @@ END_FUNCTION
 PROGRAM Main
 VAR g : Gauge; p : POINTER TO Gauge; x, y, z, k : INT; END_VAR
 g.a := 3; g.list[k] := 4; y := g.a;
-p := ADR(g); p^.a := 5;
+p := ADR(g); p^.a := 5; p[0].a := 6;
 k := Bump(1, x, y) + Bump(n := 1, sum := g.a, old => z);
 END_PROGRAM
 ST
@@ -106,8 +106,8 @@ roles() {  # roles NAME: after the declaration
   sed -n 's/^uses.st:[0-9:]*: //p' out | sed 1d | tr '\n' ' '
 }
 [ "$(roles Main.g)" = "written written read read read-write " ] || fail "a structure: $(cat out)"
-[ "$(roles Main.p)" = "written read " ] || fail "a pointer: $(cat out)"
+[ "$(roles Main.p)" = "written read read " ] || fail "a pointer: $(cat out)"
 [ "$(roles Main.x)" = "read-write " ] || fail "an in-out without a name: $(cat out)"
 [ "$(roles Main.y)" = "written written " ] || fail "an output without a name: $(cat out)"
-[ "$(roles Gauge.a)" = "written read written read-write " ] || fail "a member: $(cat out)"
+[ "$(roles Gauge.a)" = "written read written written read-write " ] || fail "a member: $(cat out)"
 [ "$(roles Bump.sum)" = "read written read read read-write " ] || fail "a parameter: $(cat out)"
