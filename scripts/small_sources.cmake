@@ -91,24 +91,28 @@ file(GLOB STC_SMALL ${CMAKE_SOURCE_DIR}/tools/stvm/*.cc ${CMAKE_SOURCE_DIR}/tool
      ${CMAKE_SOURCE_DIR}/stdlib/native/from_text.cc
      ${CMAKE_SOURCE_DIR}/online_change/apply/standby.cc
      ${CMAKE_SOURCE_DIR}/vm/runtime/scheduler_exchange.cc
-     ${CMAKE_SOURCE_DIR}/stdlib/native/to_text.cc
      ${CMAKE_SOURCE_DIR}/vm/exec/step_facts.cc)
 # Where a native version spends its time while it is made.
 foreach(name facts allocate allocator_state uses forward simplify numbers)
   list(REMOVE_ITEM STC_SMALL ${CMAKE_SOURCE_DIR}/vm/native/${name}.cc)
 endforeach()
-# Verbs that ask a controller, and what only these use.
+# Verbs that ask a controller, run a program once or speak to a broker, and what only these use.
 set(STC_CLIENT)
 foreach(name abort bench bridge change change_follow controller_client doctor edits events
         fate_view get image journal json_value names package_making plot question remote_client
         restart revoke set source status stop switch_steps switch_text times_text trace undo
         undo_only unit_table values waiting watch first_scans activity_text event_filter compiler
-        hand_over replay hard_mode)
+        hand_over replay hard_mode run run_resources run_timing player plan_trace
+        rehearsal)
   list(APPEND STC_CLIENT ${CMAKE_SOURCE_DIR}/tools/stvm/${name}.cc)
 endforeach()
-file(GLOB more_clients ${CMAKE_SOURCE_DIR}/tools/stvm/fleet*.cc
+file(GLOB more_clients ${CMAKE_SOURCE_DIR}/tools/stvm/fleet*.cc ${CMAKE_SOURCE_DIR}/tools/stvm/agent*.cc
      ${CMAKE_SOURCE_DIR}/tools/stvm/top*.cc ${CMAKE_SOURCE_DIR}/tools/stvm/timing*.cc)
-list(APPEND STC_CLIENT ${more_clients} ${CMAKE_SOURCE_DIR}/tools/common/table.cc)
+foreach(name table help option_parser option_rows options dispatch pattern signed_content trust_file
+        fleet_parts source_files ssh terminal)
+  list(APPEND STC_CLIENT ${CMAKE_SOURCE_DIR}/tools/common/${name}.cc)
+endforeach()
+list(APPEND STC_CLIENT ${more_clients})
 list(REMOVE_ITEM STC_SMALL ${STC_CLIENT})
 # The back end of the other machine makes no code here.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")

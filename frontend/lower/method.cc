@@ -124,8 +124,10 @@ std::optional<Target> MethodCode::property_target(ExprId id) {
   }
   if (!ask<Objects>().check_access(sema_.declared.pous[code.setter], expr.name))
     return std::nullopt;
-  Target out;
   const ir::TypeId type = infer(id).type;
+  const VarId parameter = ask<Objects>().value_of(sema_.declared.pous[code.setter]);
+  if (!parameter.valid() || resolve(parameter).type != type) return std::nullopt;  // said there
+  Target out;
   out.getter = code.getter;
   out.setter = code.setter;
   out.receiver = receiver_of(expr);

@@ -21,9 +21,10 @@ struct RunningCode {
   const std::vector<bool>& pous;  // ir::CallFacts::running
 };
 
-// The old image has the names of the new one. What no task runs writes nothing. What a reference or a VAR_IN_OUT of the new version may
-// lead to counts as written. Cost: one pass over the code of each version that has outputs; where
-// the POUs that are others do what they did, and more, over the code of these alone.
+// The old image has the names of the new one. What no task runs writes nothing. What a reference or
+// a VAR_IN_OUT of the new version may lead to counts as written. Cost: one pass over the code of
+// each version that has outputs; where the POUs that are others do what they did, and more, over
+// the code of these alone.
 std::vector<LeftOutput> left_outputs(const RunningCode& before, const RunningCode& after);
 
 }  // namespace vm
