@@ -294,7 +294,7 @@ Converted convert_scalar(const TypeTable& old_types, TypeId old_type, const Type
   if (from.kind == Kind::kEnum && to.kind == Kind::kEnum) {
     if (const ir::EnumLiteral* old_literal = literal_of_value(from, static_cast<int64_t>(bits))) {
       const ir::EnumLiteral* twin = literal_of_name(to, old_literal->name);
-      if (twin == nullptr) return {0, "names a literal that is gone, initialised", true};
+      if (twin == nullptr) return {0, "names a literal that is gone", true};
       return {static_cast<uint64_t>(twin->value), nullptr, false};
     }
   }

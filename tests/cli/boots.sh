@@ -61,6 +61,9 @@ before=$(stored)
 expect 0 stvm set total=2000 --dir plc
 expect 0 stvm status --dir plc
 said 'power loss +they go on, with their ways back'
+running=$(sed -n 's/^ *running *\([0-9a-f]*\).*/\1/p' out)
+[ -n "$running" ] || fail "what runs"
+said "boots next +$running"
 for _ in $(seq 4000); do [ "$(stored)" = "$before" ] || break; sleep 0.05; done
 power_cut plc
 serve plc
