@@ -65,7 +65,9 @@ bool BodyPhase::is_outside(base::SourcePos pos) const {
 
 void BodyPhase::set_line(base::SourceSpan span) const {
   if (!span.begin.valid()) return;
-  if (sema_.log != nullptr && is_outside(span.begin)) sema_.log->other_lines = true;
+  // The code of a constant, which is of no POU, is run here and now and then forgotten.
+  const bool kept = sema_.log != nullptr && !body_.evaluating;
+  if (kept && is_outside(span.begin)) sema_.log->other_lines = true;
   build_.set_line(body_.lines.line_of(span.begin));
 }
 
