@@ -119,7 +119,8 @@ base::Status Rig::change(size_t resource, const std::string& source, bool allow_
 }
 
 void Rig::undo(size_t resource) {
-  auto report = resources[resource]->change->undo();
+  auto report = resources[resource]->change->undo(online_change::Exits::kRun,
+                                                online_change::Losses::kAllowed);
   EXPECT_TRUE(report.ok()) << base::to_string(report.error());
   resources[resource]->change->collect();
 }
