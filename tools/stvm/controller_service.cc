@@ -208,7 +208,7 @@ base::Result<base::Bytes> ControllerService::status(const vm::Request&) {
     report.watch_left_ns = guard_.left_ns();
   }
   if (previous() != nullptr) report.previous = previous()->digest();
-  report.boots_next = report.last_edit_boots ? report.running : store_.boots();
+  report.boots_next = store_.boots();
   report.trial_lost = start_.trial_lost.value_or(base::Digest{});
   report.alarms = start_.alarms;
   if (!start_.fault.empty()) report.alarms.push_back(start_.fault);

@@ -33,6 +33,11 @@ constexpr tools::Command kStatusCommand{
 
 bool on_trial(const vm::StatusReport& report) { return report.edits != 0; }
 
+// The report has what is accepted (D4).
+const base::Digest& boots_next(const vm::StatusReport& report) {
+  return report.last_edit_boots ? report.running : report.boots_next;
+}
+
 void print_tier(const vm::StatusReport& report) {
   if (report.pous_to_make != 0) {
     std::printf(
@@ -73,7 +78,7 @@ void print_versions(const vm::StatusReport& report, bool undone) {
   if (on_trial(report)) {
     std::printf("  undo brings %s\n", base::short_hex(report.previous).c_str());
   }
-  std::printf("  boots next  %s\n", base::short_hex(report.boots_next).c_str());
+  std::printf("  boots next  %s\n", base::short_hex(boots_next(report)).c_str());
   if (report.trial_lost != base::Digest{}) {
     std::printf("  trial lost  %s; the controller ended before it was accepted\n",
                 base::short_hex(report.trial_lost).c_str());
@@ -225,7 +230,7 @@ void print_status_json(const vm::StatusReport& report) {
   if (!report.watched_by.empty()) {
     json.field("watched_by", report.watched_by).field("watch_left_ns", report.watch_left_ns);
   }
-  json.field("boots_next", base::to_hex(report.boots_next)).field("cycles", report.cycles);
+  json.field("boots_next", base::to_hex(boots_next(report))).field("cycles", report.cycles);
   if (report.trial_lost != base::Digest{}) {
     json.field("trial_lost", base::to_hex(report.trial_lost));
   }

@@ -189,7 +189,8 @@ class Page {
 
   void changes() {
     std::string text = "change " + now_.change + ", edition " + std::to_string(now_.edition) +
-                       ", boots next " + base::short_hex(now_.boots_next);
+                       ", boots next " +
+                       base::short_hex(now_.last_edit_boots ? now_.running : now_.boots_next);
     if (now_.edits != 0) {
       text += ", undo brings " + base::short_hex(now_.previous);
     }
