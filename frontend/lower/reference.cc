@@ -76,7 +76,8 @@ ir::Place References::addressable_place(ExprId id) {
   const bool part = note.bit_size != 0;
   const bool value = expr.kind == ExprKind::kLiteral || expr.kind == ExprKind::kCall ||
                      expr.kind == ExprKind::kUnary || expr.kind == ExprKind::kBinary ||
-                     expr.kind == ExprKind::kQualified || expr.kind == ExprKind::kAssign;
+                     expr.kind == ExprKind::kQualified || expr.kind == ExprKind::kAssign ||
+                     expr.kind == ExprKind::kThis;
   if (!part && expr.kind == ExprKind::kName && note.variable.valid() && !note.reference.valid()) {
     return variable_place(note.variable);
   }
@@ -84,7 +85,8 @@ ir::Place References::addressable_place(ExprId id) {
   if (!part && !value && !property && !note.constant) return place(id);
   error(DiagnosticCode::kBadReference, expr.span,
         part ? "a bit of a variable has no address" : "a value has no address",
-        "store it in a variable and refer to that");
+        expr.kind == ExprKind::kThis ? "THIS is an address already"
+                                     : "store it in a variable and refer to that");
   return temporary_place(note.type);
 }
 
