@@ -20,7 +20,7 @@
 namespace stvm {
 namespace {
 
-constexpr int64_t kBetweenLooksMs = 1000;
+constexpr int64_t kBetweenAgentLooksMs = 1000;
 constexpr int64_t kLastWordsMs = 2000;
 
 int64_t agent_wall_s() {
@@ -82,7 +82,7 @@ std::optional<FleetBroker> run_until_stopped(mqtt::Broker& broker, Agent& agent,
     const int64_t left = next_look_ms - agent_clock_ms();
     if (left <= 0) {
       agent.look();
-      next_look_ms = agent_clock_ms() + kBetweenLooksMs;
+      next_look_ms = agent_clock_ms() + kBetweenAgentLooksMs;
     } else if (std::optional<mqtt::Event> event = broker.wait(std::min<int64_t>(left, 200))) {
       agent.take(*event);
     }
