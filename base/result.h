@@ -4,10 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "base/check.h"
 
@@ -34,30 +35,43 @@ struct Error {
 // "R0101: text", the form in which tools print an Error.
 std::string to_string(const Error& error);
 
+// A union of its own: hundreds of types are results, and std::variant would make some sixty
+// functions for each.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : data_(std::in_place_index<0>, std::move(value)) {}
-  Result(Error error) : data_(std::in_place_index<1>, std::move(error)) {}
+  Result(T value) : ok_(true), value_(std::move(value)) {}
+  Result(Error error) : ok_(false), error_(std::move(error)) {}
+  Result(const Result& other) : ok_(other.ok_) { take(other); }
+  Result(Result&& other) noexcept(std::is_nothrow_move_constructible_v<T>) : ok_(other.ok_) {
+    take(std::move(other));
+  }
+  Result& operator=(Result other) noexcept(std::is_nothrow_move_constructible_v<T>) {
+    clear();
+    ok_ = other.ok_;
+    take(std::move(other));
+    return *this;
+  }
+  ~Result() { clear(); }
 
-  bool ok() const { return data_.index() == 0; }
-  explicit operator bool() const { return ok(); }
+  bool ok() const { return ok_; }
+  explicit operator bool() const { return ok_; }
 
   T& value() & {
-    check(ok(), "value() of a failed Result");
-    return *std::get_if<0>(&data_);
+    check(ok_, "value() of a failed Result");
+    return value_;
   }
   const T& value() const& {
-    check(ok(), "value() of a failed Result");
-    return *std::get_if<0>(&data_);
+    check(ok_, "value() of a failed Result");
+    return value_;
   }
   T&& value() && {
-    check(ok(), "value() of a failed Result");
-    return std::move(*std::get_if<0>(&data_));
+    check(ok_, "value() of a failed Result");
+    return std::move(value_);
   }
   const Error& error() const {
-    check(!ok(), "error() of a good Result");
-    return *std::get_if<1>(&data_);
+    check(!ok_, "error() of a good Result");
+    return error_;
   }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
@@ -66,7 +80,27 @@ class [[nodiscard]] Result {
   T&& operator*() && { return std::move(*this).value(); }
 
  private:
-  std::variant<T, Error> data_;
+  template <class Other>
+  void take(Other&& other) {
+    if (ok_) {
+      new (&value_) T(std::forward<Other>(other).value_);
+    } else {
+      new (&error_) Error(std::forward<Other>(other).error_);
+    }
+  }
+  void clear() {
+    if (ok_) {
+      value_.~T();
+    } else {
+      error_.~Error();
+    }
+  }
+
+  bool ok_;
+  union {
+    T value_;
+    Error error_;
+  };
 };
 
 struct Ok {};

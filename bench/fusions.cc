@@ -438,7 +438,7 @@ int main(int argc, char** argv) {
       "// Rows of fused handlers, chosen by scripts/choose_fusions.sh; fusion.h says what they\n"
       "// mean. FUSION(part, steps...): which of fused_*.cc; S<opcode, a, b, c>; f s g c are "
       "bases, "
-      "v0 the\n// result of step 0.\n");
+      "v0 the\n// result of step 0.\n#ifndef STC_NO_FUSIONS\n");
   constexpr size_t kParts = 4;
   for (size_t i = 0; i < table.size(); ++i) {
     const vm::Fusion& row = table[i];
@@ -446,5 +446,6 @@ int main(int argc, char** argv) {
     for (uint32_t k = 0; k < row.length; ++k) text += ", " + step_text(row.keys[k]);
     std::printf("FUSION(%s)\n", text.c_str());
   }
+  std::printf("#endif\n");
   return 0;
 }

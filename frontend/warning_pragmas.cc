@@ -12,7 +12,7 @@ namespace frontend {
 
 namespace {
 
-constexpr std::string_view kWord = "warning";
+constexpr std::string_view kPragmaWord = "warning";
 
 using Silent = std::optional<base::DiagnosticCode>;  // nullopt: every warning
 
@@ -21,7 +21,7 @@ bool may_silence(std::string_view text) {
   for (size_t at = 0; (at = text.find('{', at)) != std::string_view::npos;) {
     at = text.find_first_not_of(" \t\r\n", at + 1);
     if (at == std::string_view::npos) return false;
-    if (ir::same_name(text.substr(at, kWord.size()), kWord)) return true;
+    if (ir::same_name(text.substr(at, kPragmaWord.size()), kPragmaWord)) return true;
   }
   return false;
 }
@@ -33,7 +33,7 @@ class FilePragmas {
 
   void take(std::string_view inside, base::SourceSpan span) {
     PragmaReader reader(inside);
-    if (!reader.accept_word(kWord)) return;
+    if (!reader.accept_word(kPragmaWord)) return;
     const bool off = reader.is_word("off") || reader.is_word("disable");
     if (!off && !reader.is_word("restore")) {
       if (reader.kind() == PragmaReader::Kind::kText) return;  // {warning 'a text'}

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs what building and testing need and what this machine lacks. Debian 12
 # package names. Says what it installs; does nothing when all is there.
+# usage: setup.sh [--build] [PACKAGE...]; --build: no more than building the tools takes.
 set -eu
 
 missing=""
@@ -10,19 +11,23 @@ need() {  # need COMMAND PACKAGE
 need g++ g++
 need cmake cmake
 need ninja ninja-build
-need ccache ccache
-need python3 python3
-[ -e /usr/include/gtest/gtest.h ] || missing="$missing libgtest-dev"
-[ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
-need mbpoll mbpoll
-need curl curl
-need xmllint libxml2-utils
-need zsh zsh
-need fish fish
-[ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
-[ -e /usr/include/openssl/evp.h ] || missing="$missing libssl-dev"
-[ -e /usr/include/mosquitto.h ] || missing="$missing libmosquitto-dev"
-[ -x /usr/sbin/mosquitto ] || need mosquitto mosquitto
+if [ "${1:-}" = --build ]; then
+  shift
+else
+  need ccache ccache
+  need python3 python3
+  [ -e /usr/include/gtest/gtest.h ] || missing="$missing libgtest-dev"
+  [ -e /usr/include/modbus/modbus.h ] || missing="$missing libmodbus-dev"
+  need mbpoll mbpoll
+  need curl curl
+  need xmllint libxml2-utils
+  need zsh zsh
+  need fish fish
+  [ -e /usr/include/pugixml.hpp ] || missing="$missing libpugixml-dev"
+  [ -e /usr/include/openssl/evp.h ] || missing="$missing libssl-dev"
+  [ -e /usr/include/mosquitto.h ] || missing="$missing libmosquitto-dev"
+  [ -x /usr/sbin/mosquitto ] || need mosquitto mosquitto
+fi
 for package in "$@"; do  # extra packages of one make target
   dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
 done

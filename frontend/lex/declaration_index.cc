@@ -27,7 +27,7 @@ bool ends_pou(TokenKind kind) {
          kind == TokenKind::kEndInterface;
 }
 
-bool is_specifier(TokenKind kind) {
+bool is_word_before_name(TokenKind kind) {
   return kind == TokenKind::kAbstract || kind == TokenKind::kFinal || kind == TokenKind::kPublic ||
          kind == TokenKind::kInternal || kind == TokenKind::kPrivate ||
          kind == TokenKind::kProtected;
@@ -103,7 +103,7 @@ class Collector {
 
   void begin_pou() {
     size_t name = at_ + 1;
-    while (is_specifier(kind(name)) && is_name(kind(name + 1))) ++name;
+    while (is_word_before_name(kind(name)) && is_name(kind(name + 1))) ++name;
     Declared& pou = add(DeclaredKind::kPou, name, at_);
     size_t base = name + 1;
     if (kind(base) == TokenKind::kExtends && is_name(kind(++base))) {

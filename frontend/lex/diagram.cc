@@ -8,7 +8,7 @@
 namespace frontend {
 namespace {
 
-constexpr std::string_view kEnd = "END_";
+constexpr std::string_view kDiagramEnd = "END_";
 
 size_t behind_blanks(std::string_view text, size_t at) {
   while (at < text.size() && is_space(text[at]) && text[at] != '\n') ++at;
@@ -33,7 +33,7 @@ size_t next_end(std::string_view text, size_t at) {
     at = behind_blanks(text, at + 1);
     size_t end = at;
     while (end < text.size() && is_name_part(text[end])) ++end;
-    bool closing = ir::same_name(text.substr(at, kEnd.size()), kEnd);
+    bool closing = ir::same_name(text.substr(at, kDiagramEnd.size()), kDiagramEnd);
     if (closing && keyword(text.substr(at, end - at)) != TokenKind::kName) return at;
   }
   return text.size();
@@ -51,10 +51,10 @@ void Scanner::skip_diagram(size_t word, TokenKind kind) {
   size_t end = next_end(text_, at_);
   std::string_view begun = text_.substr(word, at_ - word);
   if (size_t line = text_.find('\n', at_); rung_behind && !alone) {
-    size_t same = text_.substr(0, line).find(kEnd, at_);
+    size_t same = text_.substr(0, line).find(kDiagramEnd, at_);
     if (same != std::string_view::npos) end = same;
   }
-  size_t name = end + kEnd.size();
+  size_t name = end + kDiagramEnd.size();
   bool closed = name < text_.size() && ir::same_name(text_.substr(name, begun.size()), begun);
   bool drawn = rung_behind || (kind == TokenKind::kLadder &&
                                text_.substr(at_, end - at_).find("|--") != std::string_view::npos);

@@ -7,7 +7,7 @@
 namespace frontend {
 namespace {
 
-constexpr ir::Scalar kWord = ir::Scalar::kU64;
+constexpr ir::Scalar kStepWord = ir::Scalar::kU64;
 constexpr uint32_t kWordBits = 64;
 
 // How many of `count` tests share one that asks for all of them: few of them hold.
@@ -118,7 +118,7 @@ void ChartBody::active_steps() {
   fired_.resize((waiting_.size() + kWordBits - 1) / kWordBits);
   for (ir::Place& word : fired_) {
     word = temporary_place(elementary(ir::Kind::kLword));
-    build_.store(word, kWord, build_.constant(kWord, 0));
+    build_.store(word, kStepWord, build_.constant(kStepWord, 0));
   }
   for (auto end = static_cast<uint32_t>(steps_.size()); end > 0;) {
     const uint32_t network = net_.steps[end - 1].network;
@@ -231,8 +231,9 @@ void ChartBody::fire(uint32_t number) {
   if (leaves_at_once_) leave(number);
   if (bit_[number] == sfc::kNone) return enter_all(number);
   const ir::Place& word = fired_[bit_[number] / kWordBits];
-  ir::ValueId bit = build_.constant(kWord, uint64_t{1} << bit_[number] % kWordBits);
-  build_.store(word, kWord, build_.binary(ir::Op::kOr, kWord, build_.load(word, kWord), bit));
+  ir::ValueId bit = build_.constant(kStepWord, uint64_t{1} << bit_[number] % kWordBits);
+  build_.store(word, kStepWord,
+               build_.binary(ir::Op::kOr, kStepWord, build_.load(word, kStepWord), bit));
 }
 
 void ChartBody::leave(uint32_t number) {
@@ -247,9 +248,10 @@ void ChartBody::each_fired(const std::function<void(uint32_t)>& then) {
   const uint32_t size = std::min(group_size(count), kWordBits);
   const auto any_of = [&](uint32_t first, uint32_t end) {
     const uint64_t bits = ~uint64_t{0} >> (kWordBits - (end - first)) << first % kWordBits;
-    ir::ValueId word = build_.load(fired_[first / kWordBits], kWord);
-    ir::ValueId fired = build_.binary(ir::Op::kAnd, kWord, word, build_.constant(kWord, bits));
-    return build_.compare(ir::Op::kNe, kWord, fired, build_.constant(kWord, 0));
+    ir::ValueId word = build_.load(fired_[first / kWordBits], kStepWord);
+    ir::ValueId fired =
+        build_.binary(ir::Op::kAnd, kStepWord, word, build_.constant(kStepWord, bits));
+    return build_.compare(ir::Op::kNe, kStepWord, fired, build_.constant(kStepWord, 0));
   };
   for (uint32_t first = 0; first < count;) {
     const uint32_t behind_word = (first / kWordBits + 1) * kWordBits;
@@ -266,10 +268,10 @@ void ChartBody::moves() {
   if (waiting_.empty()) return;
   ir::ValueId all;
   for (const ir::Place& place : fired_) {
-    ir::ValueId word = build_.load(place, kWord);
-    all = all.valid() ? build_.binary(ir::Op::kOr, kWord, all, word) : word;
+    ir::ValueId word = build_.load(place, kStepWord);
+    all = all.valid() ? build_.binary(ir::Op::kOr, kStepWord, all, word) : word;
   }
-  when(build_.compare(ir::Op::kNe, kWord, all, build_.constant(kWord, 0)), [&] {
+  when(build_.compare(ir::Op::kNe, kStepWord, all, build_.constant(kStepWord, 0)), [&] {
     if (!leaves_at_once_) each_fired([&](uint32_t t) { leave(t); });
     each_fired([&](uint32_t t) { enter_all(t); });
   });

@@ -10,7 +10,7 @@ namespace {
 using base::DiagnosticCode;
 
 constexpr std::string_view kAttribute = "address_map";
-constexpr uint64_t kMaxBits = uint64_t{1} << 32;
+constexpr uint64_t kMaxImageBits = uint64_t{1} << 32;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -91,7 +91,7 @@ class AddressMap {
       problem = "has more fields after its module than a channel";
     } else if (with_byte && at[1] > 7) {
       problem = "names a bit of a byte above 7";
-    } else if (bit + address.bit_size > kMaxBits) {
+    } else if (bit + address.bit_size > kMaxImageBits) {
       problem = "lies after the end of the process image";
     }
     if (problem != nullptr) {

@@ -6,12 +6,12 @@
 namespace frontend {
 namespace {
 
-struct Row {
+struct ForeignWord {
   std::string_view word;
   std::string_view instead;
 };
 
-constexpr Row kRows[] = {
+constexpr ForeignWord kForeignWords[] = {
     {"ELSEIF", "write `ELSIF`"},
     {"ELIF", "write `ELSIF`"},
     {"ENDIF", "write `END_IF`"},
@@ -30,7 +30,7 @@ constexpr Row kRows[] = {
 }  // namespace
 
 std::string instead_of(std::string_view word) {
-  for (const Row& row : kRows) {
+  for (const ForeignWord& row : kForeignWords) {
     if (ir::same_name(word, row.word)) return std::string(row.instead);
   }
   return {};

@@ -6,7 +6,7 @@ namespace frontend {
 
 namespace {
 
-const char* operator_text(BinaryOp op) {
+const char* printed_operator(BinaryOp op) {
   switch (op) {
     case BinaryOp::kOr:
       return " OR ";
@@ -46,7 +46,7 @@ const char* operator_text(BinaryOp op) {
   return "";
 }
 
-const char* operator_text(UnaryOp op) {
+const char* printed_operator(UnaryOp op) {
   switch (op) {
     case UnaryOp::kNegate:
       return "-";
@@ -112,7 +112,7 @@ std::string Printer::expression(ExprId id) const {
     case ExprKind::kCall:
       return expression(expr.operand) + arguments(expr.list);
     case ExprKind::kUnary:
-      return '(' + (operator_text(expr.unary) + expression(expr.operand)) + ')';
+      return '(' + (printed_operator(expr.unary) + expression(expr.operand)) + ')';
     case ExprKind::kBinary:
       return binary(expr);
     case ExprKind::kDirect:
@@ -166,7 +166,7 @@ std::string Printer::binary(const Expr& expr) const {
   std::string out(chain.size(), '(');
   out += expression(chain.back()->operand);
   for (auto node = chain.rbegin(); node != chain.rend(); ++node) {
-    out += operator_text((*node)->binary) + expression((*node)->right) + ')';
+    out += printed_operator((*node)->binary) + expression((*node)->right) + ')';
   }
   return out;
 }

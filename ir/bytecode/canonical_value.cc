@@ -5,7 +5,7 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kMaxDepth = 1000;
+constexpr uint32_t kMaxValueDepth = 1000;
 
 void write_name(base::ByteWriter& out, const std::string& text) {
   out.u32(static_cast<uint32_t>(text.size()));
@@ -16,7 +16,7 @@ void write_value(base::ByteWriter& out, const TypeTable& types, const ConstTable
                  TypeId type, ConstId value, uint32_t depth) {
   out.boolean(value.valid());
   // Nothing is left of an element that its type does not have.
-  if (!value.valid() || depth > kMaxDepth || !types.contains(type)) return;
+  if (!value.valid() || depth > kMaxValueDepth || !types.contains(type)) return;
   const ConstValue& content = constants[value];
   const Type& at = types[type];
   out.u64(content.bits);

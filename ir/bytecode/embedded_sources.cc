@@ -11,14 +11,13 @@ namespace {
 
 constexpr size_t kMaxBuild = 1024;  // arguments of a build
 
-base::Error bad(std::string text) {
+base::Error bad_sources(std::string text) {
   return {base::Refusal::kBadSources, "image: " + std::move(text)};
 }
 
 bool is_printable(std::string_view text) {
-  return std::none_of(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-  });
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
 }
 
 std::string quoted(std::string_view path) {
@@ -43,29 +42,32 @@ bool leads_through_file(const std::vector<SourceFile>& files, std::string_view p
 
 base::Status check_paths(const std::vector<SourceFile>& files) {
   if (files.size() > base::kMaxEmbeddedFiles) {
-    return bad(std::to_string(files.size()) + " sources; the limit is " +
-               std::to_string(base::kMaxEmbeddedFiles));
+    return bad_sources(std::to_string(files.size()) + " sources; the limit is " +
+                       std::to_string(base::kMaxEmbeddedFiles));
   }
   for (size_t i = 0; i < files.size(); ++i) {
     const std::string& path = files[i].path;
-    if (!is_path_below(path)) return bad("source " + quoted(path) + ": no path below a folder");
+    if (!is_path_below(path))
+      return bad_sources("source " + quoted(path) + ": no path below a folder");
     if (i != 0 && !(files[i - 1].path < path)) {
-      return bad("source " + quoted(path) + ": not sorted, or there twice");
+      return bad_sources("source " + quoted(path) + ": not sorted, or there twice");
     }
   }
   for (const SourceFile& file : files) {
     if (!leads_through_file(files, file.path)) continue;
-    return bad("source " + quoted(file.path) + ": a folder on the way to it is a source, too");
+    return bad_sources("source " + quoted(file.path) +
+                       ": a folder on the way to it is a source, too");
   }
   return base::Ok{};
 }
 
 base::Status check_build(const std::vector<std::string>& build) {
-  if (build.size() > kMaxBuild) return bad(std::to_string(build.size()) + " arguments of a build");
+  if (build.size() > kMaxBuild)
+    return bad_sources(std::to_string(build.size()) + " arguments of a build");
   for (const std::string& argument : build) {
     const bool option = argument.starts_with("--") && argument.size() <= base::kMaxEmbeddedPath &&
                         is_printable(argument);
-    if (!option && !is_path_below(argument)) return bad("argument " + quoted(argument));
+    if (!option && !is_path_below(argument)) return bad_sources("argument " + quoted(argument));
   }
   return base::Ok{};
 }
@@ -89,12 +91,12 @@ base::Status check_sources(const EmbeddedSources& sources) {
   uint64_t bytes = 0;
   for (const SourceFile& file : sources.files) bytes += file.size;
   if (bytes > base::kMaxEmbeddedBytes) {
-    return bad("sources of " + std::to_string(bytes) + " bytes; the limit is " +
-               std::to_string(base::kMaxEmbeddedBytes));
+    return bad_sources("sources of " + std::to_string(bytes) + " bytes; the limit is " +
+                       std::to_string(base::kMaxEmbeddedBytes));
   }
   if (base::unpacked_size(sources.packed, bytes) == bytes) return base::Ok{};
-  return bad("the packed sources do not become the " + std::to_string(bytes) +
-             " bytes that their files have");
+  return bad_sources("the packed sources do not become the " + std::to_string(bytes) +
+                     " bytes that their files have");
 }
 
 base::Result<EmbeddedSources> decode_sources(base::ByteSpan section) {
@@ -111,8 +113,9 @@ base::Result<EmbeddedSources> decode_sources(base::ByteSpan section) {
   out.build.resize(in.count(4));
   for (std::string& argument : out.build) argument = in.text();
   const base::ByteSpan packed = in.blob();
-  if (!in.done()) return bad("section `sources` is damaged at its byte " + std::to_string(in.at()));
-  if (out.none()) return bad("section `sources` has none");
+  if (!in.done())
+    return bad_sources("section `sources` is damaged at its byte " + std::to_string(in.at()));
+  if (out.none()) return bad_sources("section `sources` has none");
   out.packed.assign(packed.begin(), packed.end());
   if (base::Status sound = check_sources(out); !sound) return sound.error();
   return out;
@@ -127,13 +130,13 @@ base::Result<EmbeddedSources> sources_of(base::ByteSpan encoded) {
 base::Result<std::vector<SourceText>> unpack_sources(const EmbeddedSources& sources) {
   if (base::Status s = check_sources(sources); !s) return s.error();
   const std::optional<base::Bytes> all = base::unpack(sources.packed, base::kMaxEmbeddedBytes);
-  if (!all) return bad("the packed sources are damaged");
+  if (!all) return bad_sources("the packed sources are damaged");
   base::ByteReader in(*all);
   std::vector<SourceText> texts;
   for (const SourceFile& file : sources.files) {
     const base::ByteSpan text = in.raw(file.size);
     if (base::sha256(text) != file.digest) {
-      return bad("source " + quoted(file.path) + ": its text is not that of the build");
+      return bad_sources("source " + quoted(file.path) + ": its text is not that of the build");
     }
     texts.push_back({file.path, std::string(text.begin(), text.end())});
   }

@@ -8,7 +8,7 @@
 namespace ir {
 namespace {
 
-struct Row {
+struct BothSides {
   std::string name;
   base::Digest original{};
   base::Digest edited{};
@@ -25,14 +25,14 @@ PartState state_of(const PartEdit& edit) {
 
 std::vector<PartEdit> part_edits(const std::vector<Part>& original, const std::vector<Part>& edited,
                                  const std::vector<Part>& target) {
-  std::map<std::pair<PartKind, std::string>, Row> rows;
+  std::map<std::pair<PartKind, std::string>, BothSides> rows;
   for (const Part& part : original) {
-    Row& row = rows[{part.kind, fold_name(part.name)}];
+    BothSides& row = rows[{part.kind, fold_name(part.name)}];
     row.name = part.name;
     row.original = part.identity;
   }
   for (const Part& part : edited) {
-    Row& row = rows[{part.kind, fold_name(part.name)}];
+    BothSides& row = rows[{part.kind, fold_name(part.name)}];
     row.name = part.name;
     row.edited = part.identity;
   }

@@ -4,10 +4,11 @@
 #include <numeric>
 #include <span>
 
+#include "ir/types/natural_layout.h"
+
 namespace ir {
 namespace {
 
-constexpr uint32_t kSlotBytes = 4;    // an ID slot or an in-out slot
 constexpr uint32_t kMaxSteps = 4096;  // types nest far less; ends every descent
 
 // A place on the way down: `offset` is what remains inside it.
@@ -113,9 +114,8 @@ struct IndexedSearch {
     const std::span sorted(order.begin() + first_member[id.index],
                            order.begin() + first_member[id.index + 1]);
     const std::vector<uint32_t>& offsets = layouts[id].member_offsets;
-    const auto begun = std::partition_point(sorted.begin(), sorted.end(), [&](uint32_t number) {
-      return offsets[number] <= offset;
-    });
+    const auto begun = std::partition_point(
+        sorted.begin(), sorted.end(), [&](uint32_t number) { return offsets[number] <= offset; });
     const auto tree = ends.find(id);
     if (tree == ends.end()) return {};
     Reaching members(tree->second, offset, static_cast<size_t>(begun - sorted.begin()), most);

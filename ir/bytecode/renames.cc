@@ -14,7 +14,7 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kNone = RenameRules::kNone;
+constexpr uint32_t kNoMember = RenameRules::kNone;
 
 using Rules = RenameRules;
 using Numbers = RenameRules::Numbers;
@@ -144,7 +144,7 @@ class Renamer {
       const OldNameId rule = members[i].old_name;
       if (rule.valid()) rules.add(members[i].name, types_.old_name(rule), i);
     }
-    std::vector<uint32_t> sources(members.size(), kNone);  // by new member, the old one
+    std::vector<uint32_t> sources(members.size(), kNoMember);  // by new member, the old one
     const std::vector<Member>& before = old_.types[old].members;
     if (!rules.empty()) {
       Numbers numbers;
@@ -155,7 +155,7 @@ class Renamer {
     }
     if (edges_) pair_edges(old_.types[old], types_, types_[next], sources);
     for (uint32_t i = 0; i < members.size(); ++i) {
-      if (sources[i] != kNone) member_names_.push_back({old, sources[i], members[i].name});
+      if (sources[i] != kNoMember) member_names_.push_back({old, sources[i], members[i].name});
     }
     pair_members(old, next, sources, depth);
   }
@@ -166,12 +166,12 @@ class Renamer {
     MemberFinder finder(old_.types, old);
     std::vector<bool> renamed(old_.types[old].members.size());
     for (const uint32_t from : sources) {
-      if (from != kNone) renamed[from] = true;
+      if (from != kNoMember) renamed[from] = true;
     }
     for (uint32_t i = 0; i < members.size(); ++i) {
       const TypeId inner = innermost(types_, members[i].type);
       if (!has_names(types_[inner].kind) || !types_[inner].name.empty()) continue;
-      const bool is_renamed = sources[i] != kNone;
+      const bool is_renamed = sources[i] != kNoMember;
       const std::optional<size_t> twin =
           is_renamed ? std::optional<size_t>(sources[i]) : finder.find(members[i].name);
       if (!twin || (!is_renamed && renamed[*twin])) continue;
@@ -270,11 +270,11 @@ class Renamer {
     for (size_t at = 0; at < path.size();) {
       std::string_view name = path.substr(at, path.find_first_of(".[", at) - at);
       uint32_t number = member_number(type, name);
-      if (number == kNone && type == old_.globals) {
+      if (number == kNoMember && type == old_.globals) {
         name = listed_name(old_.types, type, path);
         number = member_number(type, name);
       }
-      if (number == kNone) return std::string(path);
+      if (number == kNoMember) return std::string(path);
       out += out_.types[type].members[number].name;
       type = old_.types[type].members[number].type;
       at += name.size();
@@ -297,7 +297,7 @@ class Renamer {
       for (uint32_t i = 0; i < members.size(); ++i) numbers.emplace(fold_name(members[i].name), i);
     }
     const auto found = numbers.find(fold_name(name));
-    return found == numbers.end() ? kNone : found->second;
+    return found == numbers.end() ? kNoMember : found->second;
   }
 
   const Image& old_;

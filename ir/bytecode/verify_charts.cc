@@ -7,7 +7,7 @@
 namespace ir::verification {
 namespace {
 
-base::Error bad(const char* why) {
+base::Error bad_chart(const char* why) {
   return refuse(Refusal::kBadReference, std::string("net of a chart: ") + why);
 }
 
@@ -17,15 +17,16 @@ bool are_members(const std::vector<uint32_t>& steps, size_t members) {
 }
 
 base::Status check(const Image& image, const LinkedChart& chart) {
-  if (chart.pou >= image.pous.size()) return bad("of no POU");
+  if (chart.pou >= image.pous.size()) return bad_chart("of no POU");
   const TypeId self = image.pous[chart.pou].self;
-  if (!image.types.contains(self) || !image.types.is_instance(self)) return bad("of no instance");
-  if (chart.moves.empty()) return bad("it is empty");
+  if (!image.types.contains(self) || !image.types.is_instance(self))
+    return bad_chart("of no instance");
+  if (chart.moves.empty()) return bad_chart("it is empty");
   const size_t members = image.types[self].members.size();
   for (const ChartMove& move : chart.moves) {
-    if (move.to.empty()) return bad("a transition leads nowhere");
+    if (move.to.empty()) return bad_chart("a transition leads nowhere");
     if (!are_members(move.from, members) || !are_members(move.to, members)) {
-      return bad("a transition has steps that are no members, or are not sorted");
+      return bad_chart("a transition has steps that are no members, or are not sorted");
     }
   }
   return base::Ok{};
@@ -37,7 +38,7 @@ base::Status verify_charts(const Image& image) {
   const auto unsorted = [](const LinkedChart& a, const LinkedChart& b) { return a.pou >= b.pou; };
   if (std::adjacent_find(image.charts.begin(), image.charts.end(), unsorted) !=
       image.charts.end()) {
-    return bad("two of one POU, or not sorted");
+    return bad_chart("two of one POU, or not sorted");
   }
   for (const LinkedChart& chart : image.charts) {
     if (base::Status s = check(image, chart); !s) return s;

@@ -10,7 +10,7 @@
 namespace ir {
 namespace {
 
-constexpr size_t kBatch = 8;  // POUs that a thread takes at a time
+constexpr size_t kPousOfAThread = 8;  // POUs that a thread takes at a time
 
 std::vector<uint32_t> written_by_caller(const codegen::Machine& machine, const Object& object) {
   std::vector<uint32_t> written;
@@ -60,7 +60,7 @@ base::Result<std::vector<Object>> lower_each(const Program& program,
   }
   std::vector<Object> objects(numbers.size());
   std::vector<std::optional<base::Error>> errors(numbers.size());
-  base::for_each_index(numbers.size(), jobs, kBatch, [&](size_t i) {
+  base::for_each_index(numbers.size(), jobs, kPousOfAThread, [&](size_t i) {
     base::Result<Object> object = lower(program, PouId(numbers[i]));
     if (object.ok()) {
       objects[i] = std::move(*object);

@@ -14,7 +14,7 @@
 namespace ir::opt {
 namespace {
 
-constexpr uint32_t kNone = 0xffffffffu;
+constexpr uint32_t kNoBlock = 0xffffffffu;
 
 class Loops {
  public:
@@ -25,8 +25,8 @@ class Loops {
     find_ways();
     if (latches_.empty()) return false;
     find_definitions();
-    inside_.assign(pou_.blocks.size(), kNone);
-    stored_.assign(pou_.locals.size(), kNone);
+    inside_.assign(pou_.blocks.size(), kNoBlock);
+    stored_.assign(pou_.locals.size(), kNoBlock);
     // Inner loops first: what is in front of one is inside the next.
     const std::vector<uint32_t>& order = dominators_.order();
     for (size_t i = order.size(); i-- > 0;) {
@@ -79,14 +79,14 @@ class Loops {
 
   void look_at(uint32_t head) {
     collect(head);
-    front_ = kNone;
+    front_ = kNoBlock;
     for (const uint32_t from : before_[head]) {
       if (is_inside(from)) continue;
-      const bool alone = front_ == kNone && pou_.blocks[from].insts.back().targets.size() == 1;
+      const bool alone = front_ == kNoBlock && pou_.blocks[from].insts.back().targets.size() == 1;
       if (!alone) return;
       front_ = from;
     }
-    if (front_ == kNone) return;
+    if (front_ == kNoBlock) return;
     find_stored();
     for (const uint32_t b : body_) {
       std::vector<Inst>& insts = pou_.blocks[b].insts;
@@ -210,7 +210,7 @@ class Loops {
   std::vector<bool> wanted_;                    // by value
   // The head of the loop at hand.
   uint32_t head_ = 0;
-  uint32_t front_ = kNone;  // the block in front of it
+  uint32_t front_ = kNoBlock;  // the block in front of it
   std::vector<uint32_t> body_;
   std::vector<uint32_t> inside_;  // by block: head_ when it is in the loop
   std::vector<uint32_t> stored_;  // by local: head_ when it may change in the loop

@@ -10,17 +10,17 @@
 namespace ir {
 namespace {
 
-struct Row {
+struct PassEntry {
   PassRow row;
   bool (*run)(const Program& program, Pou& pou);
 };
-constexpr auto kPasses = std::to_array<Row>({
+constexpr auto kPasses = std::to_array<PassEntry>({
 #define PASS(id, name, function, what) {{name, what}, opt::function},
 #include "ir/opt/passes.def"
 #undef PASS
 });
 
-constexpr auto kRows = [] {
+constexpr auto kPassRows = [] {
   std::array<PassRow, kPasses.size()> rows{};
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = kPasses[i].row;
   return rows;
@@ -34,7 +34,7 @@ constexpr Pass kOrder[] = {
     Pass::kStrength, Pass::kBranches, Pass::kStores,  Pass::kLoops, Pass::kDead,
 };
 
-constexpr size_t kBatch = 8;  // POUs that a thread takes at a time
+constexpr size_t kPousInABatch = 8;  // POUs that a thread takes at a time
 
 using Callees = std::vector<std::vector<uint32_t>>;  // functions, by POU
 
@@ -105,7 +105,7 @@ std::vector<std::vector<uint32_t>> steps_of(const Program& program) {
 base::Status sound_after(const Program& program, const Pou& pou, Pass pass) {
   const base::Status sound = verify(program, pou);
   if (sound.ok()) return base::Ok{};
-  const std::string_view name = kRows[static_cast<size_t>(pass)].name;
+  const std::string_view name = kPassRows[static_cast<size_t>(pass)].name;
   return base::Error{sound.error().refusal,
                      "after pass `" + std::string(name) + "`: " + sound.error().text};
 }
@@ -127,7 +127,7 @@ base::Status optimise_pou(const Program& program, Pou& pou, PassSet passes, bool
 
 }  // namespace
 
-std::span<const PassRow> pass_rows() { return kRows; }
+std::span<const PassRow> pass_rows() { return kPassRows; }
 
 PassSet PassSet::from_bits(uint32_t bits) {
   PassSet set;
@@ -137,9 +137,9 @@ PassSet PassSet::from_bits(uint32_t bits) {
 
 std::string PassSet::text() const {
   std::string text;
-  for (size_t i = 0; i < kRows.size(); ++i) {
+  for (size_t i = 0; i < kPassRows.size(); ++i) {
     if (!has(static_cast<Pass>(i))) continue;
-    text += (text.empty() ? "" : ",") + std::string(kRows[i].name);
+    text += (text.empty() ? "" : ",") + std::string(kPassRows[i].name);
   }
   return text.empty() ? "none" : text;
 }
@@ -154,10 +154,10 @@ base::Result<PassSet> PassSet::parse(std::string_view text) {
     const size_t end = std::min(text.find(',', begin), text.size());
     const std::string_view name = text.substr(begin, end - begin);
     size_t number = 0;
-    while (number < kRows.size() && kRows[number].name != name) ++number;
-    if (number == kRows.size()) {
+    while (number < kPassRows.size() && kPassRows[number].name != name) ++number;
+    if (number == kPassRows.size()) {
       std::string known = "all, none";
-      for (const PassRow& row : kRows) known += ", " + std::string(row.name);
+      for (const PassRow& row : kPassRows) known += ", " + std::string(row.name);
       return base::Error{base::Refusal::kUsage,
                          "unknown pass `" + std::string(name) + "`; known are " + known};
     }
@@ -171,7 +171,7 @@ base::Status optimise(Program& program, PassSet passes, bool verify_each, uint32
   if (passes.empty()) return base::Ok{};
   for (const std::vector<uint32_t>& step : steps_of(program)) {
     std::vector<base::Status> done(verify_each ? step.size() : 0, base::Ok{});
-    base::for_each_index(step.size(), jobs, kBatch, [&](size_t i) {
+    base::for_each_index(step.size(), jobs, kPousInABatch, [&](size_t i) {
       base::Status status = optimise_pou(program, program.pous[step[i]], passes, verify_each);
       if (verify_each) done[i] = std::move(status);
     });

@@ -5,12 +5,12 @@
 #include "base/limits.h"
 #include "ir/types/handle.h"
 #include "ir/types/inside.h"
+#include "ir/types/natural_layout.h"
 #include "ir/types/parts.h"
 
 namespace ir {
 namespace {
 
-constexpr uint32_t kSlotBytes = 4;
 constexpr uint32_t kExposedDataBegin = 0xf8000000u;  // where frames are (ir/bytecode/image.h)
 constexpr uint32_t kNowhere = 0xf0000000u;
 

@@ -9,7 +9,7 @@
 namespace ir {
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 char at(std::string_view text, size_t index) { return index < text.size() ? text[index] : '\0'; }
@@ -27,7 +27,7 @@ size_t number_end(std::string_view line, size_t from) {
   if (at(line, end) == '#') {
     return word_end(line, end + 1);
   }
-  if (at(line, end) == '.' && is_digit(at(line, end + 1))) {
+  if (at(line, end) == '.' && is_decimal_digit(at(line, end + 1))) {
     end = word_end(line, end + 1);
     const char sign = at(line, end);
     if (at(line, end - 1) == 'E' && (sign == '+' || sign == '-')) {
@@ -61,7 +61,7 @@ size_t LineReader::token_end(std::string_view line, size_t from, Kind& kind) {
   const char c = line[from];
   const char following = at(line, from + 1);
   const bool sign = (c == '-' || c == '+') && is_word_byte(following);
-  if (is_digit(c) || (sign && is_digit(following))) {
+  if (is_decimal_digit(c) || (sign && is_decimal_digit(following))) {
     kind = Kind::kNumber;
     return number_end(line, from);
   }

@@ -7,10 +7,10 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kNone = 0xffffffffu;
+constexpr uint32_t kUnreached = 0xffffffffu;
 
 struct Definition {
-  uint32_t block = kNone;
+  uint32_t block = kUnreached;
   uint32_t position = 0;  // 0 for parameters, instruction number + 1 otherwise
 };
 
@@ -64,7 +64,7 @@ base::Status verify_dominance(const Pou& pou) {
       for (const ValueId value : used_values(pou, pou.blocks[b].insts[i])) {
         const Definition& definition = definitions[value.index];
         const bool before = definition.block == b ? definition.position <= i
-                                                  : definition.block != kNone &&
+                                                  : definition.block != kUnreached &&
                                                         dominators.dominates(definition.block, b);
         if (!before) {
           return not_verified(inst_place(pou, b, i) + "v" + std::to_string(value.index) +

@@ -15,7 +15,7 @@ uint32_t member_size(const Layouts& layouts, const Member& member) {
 }
 
 // A part on the way down and what remains of the offset in it.
-struct Part {
+struct Inner {
   TypeId type;
   uint32_t rest = 0;
   bool slot = false;
@@ -27,7 +27,7 @@ bool covers(const Layouts& layouts, TypeId owner, size_t member, const Member& o
 }
 
 // Among members that overlap, one of the wanted type comes before others.
-size_t member_inside(const TypeTable& types, const Layouts& layouts, const Part& part,
+size_t member_inside(const TypeTable& types, const Layouts& layouts, const Inner& part,
                      TypeId target) {
   const std::vector<Member>& members = types[part.type].members;
   const size_t count = std::min(members.size(), layouts[part.type].member_offsets.size());
@@ -43,7 +43,7 @@ size_t member_inside(const TypeTable& types, const Layouts& layouts, const Part&
 }
 
 // The member or element that covers the offset; false in holes and at leaves.
-bool step_down(const TypeTable& types, const Layouts& layouts, Part& part, TypeId target,
+bool step_down(const TypeTable& types, const Layouts& layouts, Inner& part, TypeId target,
                std::string& path) {
   const Type& type = types[part.type];
   if (part.slot) {
@@ -121,7 +121,7 @@ std::string index_text(const Type& array, uint64_t flat) {
 std::string path_inside(const TypeTable& types, const Layouts& layouts, TypeId root,
                         uint32_t offset, TypeId target) {
   std::string path;
-  Part part{root, offset, false};
+  Inner part{root, offset, false};
   for (uint32_t depth = 0; depth < base::kMaxNesting; ++depth) {
     if (part.rest == 0 && target.valid() && types.is_a(part.type, target)) {
       break;

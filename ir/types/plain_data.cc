@@ -5,11 +5,11 @@
 namespace ir {
 namespace {
 
-constexpr uint32_t kMaxDepth = 200;
+constexpr uint32_t kMaxPlainDepth = 200;
 
 // `visited` counts the parts, so that types which hold others many times end too.
 bool plain(const TypeTable& types, TypeId id, uint32_t depth, uint32_t& visited) {
-  if (!types.contains(id) || depth > kMaxDepth || ++visited > kMaxPlainParts) return false;
+  if (!types.contains(id) || depth > kMaxPlainDepth || ++visited > kMaxPlainParts) return false;
   const Type& type = types[id];
   switch (type.kind) {
     case Kind::kArray:

@@ -9,7 +9,7 @@
 namespace online_change {
 namespace {
 
-uint64_t load(const uint8_t* memory, uint32_t at) {
+uint64_t load_handle(const uint8_t* memory, uint32_t at) {
   uint64_t handle = 0;
   std::memcpy(&handle, memory + at, sizeof handle);
   return handle;
@@ -37,7 +37,7 @@ void HandleTransfer::for_each_broken(
   if (moves_.trivial()) return;
   const Areas areas(old_);
   for (const ReferenceLeaf& leaf : reference_leaves(old_)) {
-    const uint64_t handle = load(memory, leaf.at);
+    const uint64_t handle = load_handle(memory, leaf.at);
     const Target target = moves_.target_in_old(old_, leaf.type);
     if (handle == 0 || !moves_.follow(handle, target).gone) continue;
     const std::optional<uint32_t> id = areas.instance_at(leaf.at);
@@ -52,7 +52,7 @@ std::optional<uint32_t> HandleTransfer::forward(uint8_t* memory, bool allow_loss
                                                 const Interrupted& interrupted) {
   for (size_t i = 0; i < references_.size(); ++i) {
     Reference& one = references_[i];
-    one.before = one.after = load(memory, one.at);
+    one.before = one.after = load_handle(memory, one.at);
     if (one.before == 0) continue;
     const Followed now = moves_.follow(one.before, one.there);
     const bool stop = interrupted && interrupted();
@@ -73,7 +73,7 @@ void HandleTransfer::restore_forward(uint8_t* memory) const {
 bool HandleTransfer::back(uint8_t* memory, const Interrupted& interrupted) {
   for (size_t i = 0; i < references_.size(); ++i) {
     Reference& one = references_[i];
-    one.saved = load(memory, one.at);
+    one.saved = load_handle(memory, one.at);
     if (interrupted && interrupted()) {
       while (i-- > 0) store(memory, references_[i].at, references_[i].saved);
       return false;

@@ -17,8 +17,6 @@ namespace {
 // Each level of instances may be an element of an array: two separators.
 constexpr int kMostParts = 2 * (base::kMaxNesting + 1);
 
-std::string_view base_name(std::string_view name) { return name.substr(0, name.find('[')); }
-
 bool is_lost(const FateRow& row) {
   return row.may_lose && (row.fate == Fate::kDropped || row.fate == Fate::kInitialised);
 }
@@ -61,9 +59,9 @@ uint64_t elements_in(const std::string& path) {
   return all;
 }
 
-class Finder {
+class LossFinder {
  public:
-  Finder(const ir::Image& old_image, const ir::Image& new_image)
+  LossFinder(const ir::Image& old_image, const ir::Image& new_image)
       : old_(old_image), new_(new_image), match_(match_instances(old_image, new_image)) {
     retyped_to_.assign(old_.instances.size(), kNoInstance);
     for (uint32_t id = 0; id < match_.retyped_from.size(); ++id) {
@@ -169,7 +167,7 @@ std::string element_of(const std::string& inside, uint64_t number) {
 }
 
 LostPlaces lost_places(const Plan& plan, const ir::Image& old_image, const ir::Image& new_image) {
-  std::optional<Finder> finder;
+  std::optional<LossFinder> finder;
   for (const FateRow& row : plan.fates) {
     if (!is_lost(row)) continue;
     if (!finder) finder.emplace(old_image, new_image);

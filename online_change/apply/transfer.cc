@@ -15,7 +15,7 @@ constexpr uint32_t kFastValues = 1024;
 constexpr uint32_t kSlowValues = 128;
 
 // Values of `piece`, `stride` apart, to or from a place without gaps.
-void gather(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* out) {
+void gather_piece(const uint8_t* from, const Piece& piece, uint32_t stride, uint8_t* out) {
   if (piece.count == 1 || stride == piece.size) {
     std::memcpy(out, from, piece.total());
     return;
@@ -155,7 +155,7 @@ void Transfer::touch(uint8_t* memory) const {
 
 void Transfer::read_values(const Piece& piece, const uint8_t* memory, uint8_t* out) const {
   if (piece.kind == StepKind::kCopy)
-    return gather(memory + piece.from, piece, piece.from_stride, out);
+    return gather_piece(memory + piece.from, piece, piece.from_stride, out);
   if (piece.kind == StepKind::kEnter) {
     const uint32_t from = memory[piece.active] != 0 ? piece.active : piece.from;
     std::memcpy(out, memory + from, piece.total());
@@ -243,7 +243,7 @@ bool Transfer::remember(const uint8_t* memory, const Interrupted& interrupted) {
   for (const Piece& piece : pieces_) {
     if (piece.kind == StepKind::kCopy) continue;
     if (interrupted && interrupted()) return false;
-    gather(memory + piece.to, piece, piece.to_stride, remembered_.data() + piece.at);
+    gather_piece(memory + piece.to, piece, piece.to_stride, remembered_.data() + piece.at);
   }
   return true;
 }
@@ -310,7 +310,7 @@ bool Transfer::save(const uint8_t* memory, const Interrupted& interrupted) {
   base::dcheck(saved_.size() == staged_.size(), "what is overwritten in place can be kept");
   for (const Piece& piece : pieces_) {
     if (interrupted && interrupted()) return false;
-    gather(memory + piece.to, piece, piece.to_stride, saved_.data() + piece.at);
+    gather_piece(memory + piece.to, piece, piece.to_stride, saved_.data() + piece.at);
   }
   return true;
 }

@@ -7,7 +7,6 @@
 namespace online_change {
 namespace {
 
-
 std::string index_text(const std::vector<ir::Dimension>& dims, uint64_t flat) {
   std::string text;
   for (size_t i = dims.size(); i-- > 0;) {
@@ -16,12 +15,6 @@ std::string index_text(const std::vector<ir::Dimension>& dims, uint64_t flat) {
     text = std::to_string(index) + (text.empty() ? "" : "," + text);
   }
   return "[" + text + "]";
-}
-
-uint64_t element_count(const ir::Type& type) {
-  uint64_t count = 1;
-  for (const ir::Dimension& dim : type.dims) count *= dim.count();
-  return count;
 }
 
 }  // namespace
@@ -96,7 +89,7 @@ std::optional<Node> Areas::child_at(Node node, uint32_t offset, std::string* pat
   uint32_t relative = offset - node.begin;
   if (type.kind == ir::Kind::kArray) {
     uint32_t stride = image_.layouts[type.base].size;
-    if (stride == 0 || relative / stride >= element_count(type)) return std::nullopt;
+    if (stride == 0 || relative / stride >= type.element_count()) return std::nullopt;
     if (path != nullptr) *path += index_text(type.dims, relative / stride);
     return Node{type.base, node.begin + relative / stride * stride, false};
   }
@@ -136,7 +129,7 @@ bool Areas::is_array_of(uint32_t offset, ir::TypeId element, uint32_t count) con
       uint32_t stride = image_.layouts[element].size;
       uint32_t relative = offset - node->begin;
       return stride != 0 && relative % stride == 0 &&
-             element_count(type) - std::min<uint64_t>(element_count(type), relative / stride) >=
+             type.element_count() - std::min<uint64_t>(type.element_count(), relative / stride) >=
                  count;
     }
     // Another instance's slot ends the walk: its variables lie in an area of their own.

@@ -155,6 +155,6 @@ bool is_identity(const std::vector<DiffOp>& ops) {
   });
 }
 
-std::string renamed_from(const std::string& name) { return std::string(kRenamed) + name + "`"; }
+std::string renamed_from(std::string_view name) { return std::string(kRenamed).append(name) + "`"; }
 
 }  // namespace online_change

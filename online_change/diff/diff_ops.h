@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "online_change/diff/type_diff.h"
@@ -26,6 +28,6 @@ bool carve(std::vector<DiffOp>& ops, uint32_t to, uint32_t size, uint64_t leaves
 // Does nothing move, change, come or go?
 bool is_identity(const std::vector<DiffOp>& ops);
 
-std::string renamed_from(const std::string& name);
+std::string renamed_from(std::string_view name);
 
 }  // namespace online_change

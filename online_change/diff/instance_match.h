@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "ir/bytecode/image.h"
@@ -22,6 +23,9 @@ struct InstanceMatch {
   // The path lives on with another type (TON -> TOF): by new ID, the old instance.
   std::vector<uint32_t> retyped_from;
 };
+
+// An instance's name without the index that it has in an array.
+inline std::string_view base_name(std::string_view name) { return name.substr(0, name.find('[')); }
 
 InstanceMatch match_instances(const ir::Image& old_image, const ir::Image& new_image);
 

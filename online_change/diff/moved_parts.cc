@@ -140,9 +140,10 @@ bool converts(const ir::Image& from, TypeId old_type, const ir::Image& to, TypeI
   return classify(from.types, old_type, to.types, new_type) != Conversion::kNone;
 }
 
-class Finder {
+class PartFinder {
  public:
-  Finder(const ir::Image& old_image, TypeId old_area, const ir::Image& new_image, TypeId new_area)
+  PartFinder(const ir::Image& old_image, TypeId old_area, const ir::Image& new_image,
+             TypeId new_area)
       : old_image_(old_image),
         new_image_(new_image),
         source_(old_image, old_area),
@@ -213,7 +214,7 @@ bool index_covers(std::string_view& row, std::string_view& path) {
 
 std::vector<MovedPart> moved_parts(const ir::Image& old_image, TypeId old_area,
                                    const ir::Image& new_image, TypeId new_area) {
-  Finder finder(old_image, old_area, new_image, new_area);
+  PartFinder finder(old_image, old_area, new_image, new_area);
   for (const ir::Member& member : new_image.types[new_area].members) {
     if (!member.old_name.valid() || !new_image.types.knows(member.old_name)) continue;
     const std::string& rule = new_image.types.old_name(member.old_name);

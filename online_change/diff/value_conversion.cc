@@ -190,7 +190,7 @@ Conversion classify_enums(const ir::Type& from, const ir::Type& to, bool same_ki
   return result;
 }
 
-bool is_string(Kind kind) { return kind == Kind::kString || kind == Kind::kWstring; }
+bool is_text(Kind kind) { return kind == Kind::kString || kind == Kind::kWstring; }
 
 Conversion classify_strings(const ir::Type& from, const ir::Type& to) {
   if (from.kind == to.kind && from.capacity == to.capacity) return Conversion::kSame;
@@ -243,7 +243,7 @@ Conversion classify(const TypeTable& old_types, TypeId old_type, const TypeTable
                     TypeId new_type) {
   const ir::Type& from = old_types[old_type];
   const ir::Type& to = new_types[new_type];
-  if (is_string(from.kind) && is_string(to.kind)) return classify_strings(from, to);
+  if (is_text(from.kind) && is_text(to.kind)) return classify_strings(from, to);
   if (!old_types.is_scalar(old_type) || !new_types.is_scalar(new_type)) return Conversion::kNone;
   if (old_types.is_reference(old_type) || new_types.is_reference(new_type)) {
     return classify_references(old_types, old_type, new_types, new_type);

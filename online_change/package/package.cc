@@ -19,7 +19,7 @@ using base::ByteWriter;
 // Header: magic, version, of each part its bytes and their SHA-256; then the parts. Layout and
 // program together are the image.
 constexpr uint32_t kMagic = 0x47504353;  // "SCPG"
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kPackageVersion = 4;
 constexpr uint32_t kShortVersion = 5;  // layout and program are deltas to those of the base
 // As these, with gathers; written only where there are some.
 constexpr uint32_t kGatherVersion = 6;
@@ -109,8 +109,8 @@ base::Bytes encode_short(const Package& plans, base::ByteSpan image, base::ByteS
   const auto [layout, program] = parts_of(image);
   const auto [base_layout, base_program] = parts_of(base_image);
   const uint32_t version = has_gathers(plans) ? kShortGatherVersion : kShortVersion;
-  return put_together(version, {make_delta(base_layout, layout),
-                                      make_delta(base_program, program), commands});
+  return put_together(
+      version, {make_delta(base_layout, layout), make_delta(base_program, program), commands});
 }
 
 // A package without its image.
@@ -146,7 +146,7 @@ bool has_package_magic(base::ByteSpan bytes) {
 base::Bytes encode(const Package& package) {
   const base::Bytes commands = encode_commands(package);
   const auto [layout, program] = parts_of(package.image);
-  const uint32_t version = has_gathers(package) ? kGatherVersion : kVersion;
+  const uint32_t version = has_gathers(package) ? kGatherVersion : kPackageVersion;
   return put_together(version, {layout, program, commands});
 }
 
@@ -165,7 +165,7 @@ base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   if (in.u32() != kMagic) return bad_format("does not begin like one");
   uint32_t version = in.u32();
   const bool gathers = version == kGatherVersion || version == kShortGatherVersion;
-  if (version != kVersion && version != kShortVersion && !gathers)
+  if (version != kPackageVersion && version != kShortVersion && !gathers)
     return bad_format("has version " + std::to_string(version));
   base::Result<Parts> parts = split(in);
   if (!parts.ok()) return parts.error();
@@ -174,7 +174,7 @@ base::Result<Package> decode(base::ByteSpan bytes, base::ByteSpan base_image) {
   base::ReadArchive plans(commands);
   command_fields(plans, package, gathers);
   if (!plans.done()) return bad_format("has a damaged plan");
-  if (version == kVersion || version == kGatherVersion) {
+  if (version == kPackageVersion || version == kGatherVersion) {
     package.image.assign(layout.begin(), layout.end());
     package.image.insert(package.image.end(), program.begin(), program.end());
     return package;

@@ -11,8 +11,8 @@ namespace online_change {
 namespace {
 
 constexpr uint32_t kSignedVersion = 1;
-constexpr const char* kKindNames[kSignedKinds] = {"image", "package", "fleet file",
-                                                  "list of revoked keys", "order to an agent"};
+constexpr const char* kSignedKindNames[kSignedKinds] = {
+    "image", "package", "fleet file", "list of revoked keys", "order to an agent"};
 
 base::Error bad_signed(const std::string& text) {
   return {base::Refusal::kBadFormat, "signed file: " + text};
@@ -62,7 +62,9 @@ base::Result<Statement> read_statement(base::ByteSpan bytes) {
 
 }  // namespace
 
-const char* signed_kind_name(SignedKind kind) { return kKindNames[static_cast<size_t>(kind)]; }
+const char* signed_kind_name(SignedKind kind) {
+  return kSignedKindNames[static_cast<size_t>(kind)];
+}
 
 bool has_signed_magic(base::ByteSpan bytes) { return begins_with(bytes, kSignedMagic); }
 

@@ -13,13 +13,6 @@ namespace {
 using ir::Kind;
 using ir::TypeId;
 
-
-uint64_t element_count(const ir::Type& array) {
-  uint64_t count = 1;
-  for (const ir::Dimension& dim : array.dims) count *= dim.count();
-  return count;
-}
-
 Fit both(Fit a, Fit b) {
   if (a == Fit::kNo || b == Fit::kNo) return Fit::kNo;
   return std::max(a, b);
@@ -102,8 +95,8 @@ Fit TypeFit::compare_values(TypeId old_type, TypeId new_type) {
 Fit TypeFit::elements(TypeId old_type, uint64_t skipped, TypeId new_type) {
   const ir::Type& from = old_.types[old_type];
   const ir::Type& to = new_.types[new_type];
-  uint64_t available = element_count(from);
-  if (skipped > available || available - skipped < element_count(to)) return Fit::kNo;
+  uint64_t available = from.element_count();
+  if (skipped > available || available - skipped < to.element_count()) return Fit::kNo;
   if (old_.layouts[from.base].size != new_.layouts[to.base].size) return Fit::kNo;
   return values(from.base, to.base);
 }

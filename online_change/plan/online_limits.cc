@@ -21,7 +21,7 @@ constexpr OnlineLimits kLimits[] = {
 #undef ONLINE_LIMITS
 };
 
-constexpr const char* kKindNames[] = {
+constexpr const char* kEditKindNames[] = {
 #define ONLINE_EDIT(id, name, rule, what, remark) name,
 #include "online_change/plan/online_edits.def"
 #undef ONLINE_EDIT
@@ -80,7 +80,7 @@ void add_parts(const ir::Image& before, const ir::Image& after, std::vector<Onli
 
 }  // namespace
 
-const char* edit_kind_name(EditKind kind) { return kKindNames[static_cast<size_t>(kind)]; }
+const char* edit_kind_name(EditKind kind) { return kEditKindNames[static_cast<size_t>(kind)]; }
 
 EditKind kind_of(TableChange change) {
   return static_cast<EditKind>(static_cast<uint8_t>(EditKind::kVariableRemoved) +

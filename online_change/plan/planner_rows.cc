@@ -11,8 +11,6 @@ namespace {
 // Told beside what else becomes of a variable: the new one will show after a cold start only.
 constexpr const char* kInitialChanged = "; initial value changed, the live value stays";
 
-std::string base_name(const std::string& name) { return name.substr(0, name.find('[')); }
-
 std::string join_path(const std::string& instance, const std::string& relative) {
   return instance.empty() && !relative.empty() ? relative.substr(1) : instance + relative;
 }
@@ -93,7 +91,7 @@ std::string Planner::rename_note(const Carried& instance, const DiffOp& op) cons
 void Planner::rename_row(const Carried& instance, bool whole) {
   const ir::Instance& from = old_.instances[instance.old_id];
   const std::string key = "R" + std::to_string(old_.instances[from.parent].type.index) + "." +
-                          base_name(from.name) + ":" + std::to_string(from.type.index);
+                          std::string(base_name(from.name)) + ":" + std::to_string(from.type.index);
   share(key, whole ? instance.diff->leaves : 0, [&] {
     FateRow row;
     row.path = new_.instance_path(instance.new_id);
@@ -206,7 +204,8 @@ uint32_t Planner::added_row(uint32_t new_id, uint64_t leaves) {
   uint32_t replaced = match_.retyped_from[new_id];
   uint32_t parent_type = new_.instances[instance.parent].type.index;
   std::string key = (replaced == kNoInstance ? "n" : "t") + std::to_string(parent_type) + "." +
-                    base_name(instance.name) + ":" + std::to_string(instance.type.index);
+                    std::string(base_name(instance.name)) + ":" +
+                    std::to_string(instance.type.index);
   return share(key, leaves, [&] {
     FateRow row;
     row.fate = Fate::kInitialised;
@@ -251,7 +250,8 @@ void Planner::find_live() {
 uint32_t Planner::dropped_row(uint32_t old_id, uint64_t leaves) {
   const ir::Instance& instance = old_.instances[old_id];
   std::string key = "d" + std::to_string(old_.instances[instance.parent].type.index) + "." +
-                    base_name(instance.name) + ":" + std::to_string(instance.type.index);
+                    std::string(base_name(instance.name)) + ":" +
+                    std::to_string(instance.type.index);
   return share(key, leaves, [&] {
     FateRow row;
     row.fate = Fate::kDropped;

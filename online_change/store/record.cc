@@ -11,7 +11,7 @@ namespace online_change {
 namespace {
 
 constexpr uint64_t kRecordMagic = 0x44524f4345524353;  // "SCRECORD"
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kRecordVersion = 1;
 // The payload is of two parts, and the hash one of their hashes: the second one's is often known.
 constexpr uint32_t kInParts = 2;
 constexpr size_t kRecordChecksumAt = kSectorBytes - 4;  // of all bytes before it
@@ -43,7 +43,7 @@ bool decode(base::ByteSpan sector, Header& out) {
   base::ByteReader in(sector);
   if (in.u64() != kRecordMagic) return false;
   const uint32_t version = in.u32();
-  if (version != kVersion && version != kInParts) return false;
+  if (version != kRecordVersion && version != kInParts) return false;
   out.kind = static_cast<RecordKind>(in.u32());
   out.sequence = in.u64();
   out.length = in.u64();
@@ -71,7 +71,7 @@ base::Bytes record_header(RecordKind kind, uint64_t sequence, const Payload& pay
   base::dcheck(sequence <= kLastSequence, "a record has a sequence number that is read again");
   base::ByteWriter out;
   out.u64(kRecordMagic);
-  out.u32(payload.second_sum ? kInParts : kVersion);
+  out.u32(payload.second_sum ? kInParts : kRecordVersion);
   out.u32(static_cast<uint32_t>(kind));
   out.u64(sequence);
   out.u64(payload.first.size() + payload.second.size());

@@ -25,6 +25,13 @@ expect 2 stvm get --dir nowhere
 expect 7 stc check missing.st
 expect 7 stvm get Main.small --dir nowhere
 said 'R0404'
+# A compiler beside stvm that ends without a word is a fault of the tools.
+mkdir beside
+cp "$bin/stvm" beside/
+printf '#!/bin/sh\nexit 3\n' >beside/stc
+chmod +x beside/stc
+expect 70 beside/stvm run good.st --virtual-time --scans 1
+said 'R0599: stc failed without a reason'
 for tool in stc stvm; do
   expect 0 $tool help --format json
   json '[row["code"] for row in d["exit_codes"]] == [0, 1, 2, 7, 70, 74]'

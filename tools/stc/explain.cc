@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/diagnostics.h"
+#include "base/diagnostics_render.h"
 #include "base/limits.h"
 #include "base/nearest_name.h"
 #include "base/result.h"
@@ -78,23 +79,12 @@ std::string traps_page() {
   return fitted(table);
 }
 
-const char* severity_name(base::Severity severity) {
-  switch (severity) {
-    case base::Severity::kError:
-      return "error";
-    case base::Severity::kWarning:
-      return "warning";
-    case base::Severity::kNote:
-      return "note";
-  }
-  return "";
-}
-
 std::string diagnostics_page() {
   tools::Table table({"code", "severity", "title"});
   for (uint32_t i = 0; i < base::diagnostic_count(); ++i) {
     const auto& row = base::diagnostic_row(static_cast<base::DiagnosticCode>(i));
-    table.row({std::string(row.code), severity_name(row.severity), std::string(row.title)});
+    table.row({std::string(row.code), std::string(base::severity_name(row.severity)),
+               std::string(row.title)});
   }
   return fitted(table);
 }
@@ -240,7 +230,8 @@ std::optional<std::string> page_of(const std::string& given) {
   }
   if (const auto code = base::diagnostic_code(what)) {
     const base::DiagnosticRow& row = base::diagnostic_row(*code);
-    return what + ": " + std::string(row.title) + " (" + severity_name(row.severity) + ")\n\n" +
+    return what + ": " + std::string(row.title) + " (" +
+           std::string(base::severity_name(row.severity)) + ")\n\n" +
            std::string(base::diagnostic_page(*code)) + "\n";
   }
   for (uint32_t i = 0; i < ir::kTrapCount; ++i) {

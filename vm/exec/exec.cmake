@@ -4,8 +4,11 @@
 if(STC_SANITIZE OR STC_COVERAGE OR CMAKE_BUILD_TYPE STREQUAL "Quick")
   set(STC_AS_WRITTEN ON)
 endif()
-if(TARGET vm_exec AND STC_AS_WRITTEN)
-  target_compile_definitions(vm_exec PRIVATE STC_TAIL_CALLS=0)
+if(STC_AS_WRITTEN)
+  add_compile_definitions(STC_TAIL_CALLS=0)
+endif()
+if(NOT STC_FUSIONS)
+  add_compile_definitions(STC_NO_FUSIONS)
 endif()
 
 # Handlers neither throw nor are they thrown through: what would unwind them is a tenth of stvm.

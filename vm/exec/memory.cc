@@ -12,7 +12,7 @@
 namespace vm {
 namespace {
 
-constexpr size_t kBytes = size_t{1} << 32;
+constexpr size_t kRangeBytes = size_t{1} << 32;
 
 #ifdef STC_EMULATED
 
@@ -20,7 +20,7 @@ constexpr size_t kBytes = size_t{1} << 32;
 // have something in is mapped: the bottom, and what lies from kMaxDataBytes on. Whoever needs more
 // ends by a signal. Ranges lie low in the space of `qemu -R`.
 constexpr size_t kBottom = size_t{1} << 28;
-constexpr size_t kTop = kBytes - base::kMaxDataBytes;
+constexpr size_t kTop = kRangeBytes - base::kMaxDataBytes;
 
 constexpr uint32_t kRanges = 13;
 std::atomic<uint32_t> used_ranges{0};  // a bit for each
@@ -33,7 +33,7 @@ uint8_t* map_range() {
   for (uint32_t i = 0; i < kRanges; ++i) {
     const uint32_t bit = 1u << i;
     if ((used_ranges.fetch_or(bit) & bit) != 0) continue;
-    auto* base = reinterpret_cast<uint8_t*>((i + 1) * kBytes);
+    auto* base = reinterpret_cast<uint8_t*>((i + 1) * kRangeBytes);
     if (map_at(base, kBottom) && map_at(base + base::kMaxDataBytes, kTop)) return base;
   }
   errno = ENOMEM;
@@ -43,7 +43,7 @@ uint8_t* map_range() {
 void unmap_range(uint8_t* base) {
   munmap(base, kBottom);
   munmap(base + base::kMaxDataBytes, kTop);
-  used_ranges.fetch_and(~(1u << (reinterpret_cast<uintptr_t>(base) / kBytes - 1)));
+  used_ranges.fetch_and(~(1u << (reinterpret_cast<uintptr_t>(base) / kRangeBytes - 1)));
 }
 
 #else
@@ -52,17 +52,18 @@ void unmap_range(uint8_t* base) {
 constexpr size_t kGuard = size_t{3} << 30;
 
 uint8_t* map_range() {
-  void* range =
-      mmap(nullptr, kBytes + kGuard, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  void* range = mmap(nullptr, kRangeBytes + kGuard, PROT_NONE,
+                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (range == MAP_FAILED) return nullptr;
-  if (mprotect(range, kBytes, PROT_READ | PROT_WRITE) == 0) return static_cast<uint8_t*>(range);
+  if (mprotect(range, kRangeBytes, PROT_READ | PROT_WRITE) == 0)
+    return static_cast<uint8_t*>(range);
   const int reason = errno;
-  munmap(range, kBytes + kGuard);
+  munmap(range, kRangeBytes + kGuard);
   errno = reason;
   return nullptr;
 }
 
-void unmap_range(uint8_t* base) { munmap(base, kBytes + kGuard); }
+void unmap_range(uint8_t* base) { munmap(base, kRangeBytes + kGuard); }
 
 #endif
 
@@ -88,6 +89,6 @@ Memory::~Memory() {
   if (base_ != nullptr) unmap_range(base_);
 }
 
-std::span<const uint8_t> Memory::view() const { return {base_, kBytes}; }
+std::span<const uint8_t> Memory::view() const { return {base_, kRangeBytes}; }
 
 }  // namespace vm

@@ -4,19 +4,19 @@
 
 #include "base/limits.h"
 #include "ir/bytecode/regions.h"
+#include "ir/types/natural_layout.h"
 
 namespace vm {
 namespace {
 
-constexpr uint32_t kSlotBytes = 4;
 constexpr int32_t kOnePast = 1;  // ir/types/reach.h
 
 // Does a slot have a byte in [begin, end), which lies in the reach?
-bool touches_slot(const Home& home, uint64_t begin, uint64_t end) {
+bool touches_slot(const ReferenceHome& home, uint64_t begin, uint64_t end) {
   if (!home.reach.has_slots) return false;
   const uint32_t* const last = home.slots + home.slot_count;
   const uint32_t* const next = std::partition_point(
-      home.slots, last, [begin](uint64_t at) { return at + kSlotBytes <= begin; });
+      home.slots, last, [begin](uint64_t at) { return at + ir::kSlotBytes <= begin; });
   return next != last && *next < end;
 }
 
@@ -95,7 +95,7 @@ std::optional<uint64_t> expose(Context& ctx, uint32_t depth, uint32_t pou, uint3
   return ir::make_handle(at->segment, address - begin);
 }
 
-KnownReach known_reach(const Home& home, uint64_t handle) {
+KnownReach known_reach(const ReferenceHome& home, uint64_t handle) {
   const bool slots = home.reach.has_slots && home.slot_count != 0;
   const auto whole = static_cast<uint32_t>(ir::with_away(0, ir::kWhole) >> 32);
   const uint32_t mark = ir::handle_away(handle) == ir::kWhole ? whole : 0;
@@ -128,17 +128,17 @@ uint32_t instance_of(const Context& ctx, uint64_t handle) {
 
 }  // namespace
 
-std::optional<Home> find_home(const Context& ctx, uint64_t handle) {
+std::optional<ReferenceHome> find_home(const Context& ctx, uint64_t handle) {
   const uint32_t segment = ir::handle_segment(handle);
   if (const AreaEntry* const area = area_of(ctx, segment)) {
-    return Home{area->data, ir::reach_of(reaches_of(ctx, *area), area->used, handle),
-                ctx.generation->area_slots().data() + area->first_slot, area->slot_count};
+    return ReferenceHome{area->data, ir::reach_of(reaches_of(ctx, *area), area->used, handle),
+                         ctx.generation->area_slots().data() + area->first_slot, area->slot_count};
   }
   if ((segment & ir::kExposedBit) == 0) return std::nullopt;
   const Exposure* const local = exposure_of(ctx, segment);
   if (local == nullptr) return std::nullopt;
   const ir::Reach whole[] = {{0, local->size, false}};
-  return Home{local->begin, ir::reach_of(whole, local->size, handle), nullptr, 0};
+  return ReferenceHome{local->begin, ir::reach_of(whole, local->size, handle), nullptr, 0};
 }
 
 uint64_t move_handle(const Context& ctx, uint64_t handle, uint64_t way, KnownReach& known) {
@@ -152,7 +152,7 @@ uint64_t move_handle(const Context& ctx, uint64_t handle, uint64_t way, KnownRea
       return ir::move_offset(handle, bytes);
     }
   }
-  const std::optional<Home> home = find_home(ctx, handle);
+  const std::optional<ReferenceHome> home = find_home(ctx, handle);
   if (!home) return ir::move_offset(handle, bytes);
   known = known_reach(*home, handle);
   return ir::moved_from(home->reach, handle, bytes);
@@ -168,7 +168,7 @@ uint32_t resolve_bytes(const Context& ctx, uint64_t handle, uint32_t size, Known
       return area->data + place;
     }
   }
-  const std::optional<Home> home = find_home(ctx, handle);
+  const std::optional<ReferenceHome> home = find_home(ctx, handle);
   const uint32_t offset = ir::handle_offset(handle);
   if (!home || !home->reach.covers(offset, size)) return 0;
   if (touches_slot(*home, offset, uint64_t{offset} + size)) return 0;
@@ -190,7 +190,7 @@ uint64_t move_for_code(Context* ctx, uint64_t handle, uint64_t bytes, uint64_t s
 uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site) {
   KnownReach& known = ctx->reaches[site];
   const int32_t away = ir::handle_away(handle);
-  const std::optional<Home> home = find_home(*ctx, handle);
+  const std::optional<ReferenceHome> home = find_home(*ctx, handle);
   if (home && (away == 0 || away == kOnePast)) {
     known = known_reach(*home, handle);
     const uint32_t distance = ir::handle_offset(handle) - known.begin;
@@ -204,7 +204,7 @@ uint64_t reach_for_code(Context* ctx, uint64_t handle, uint64_t, uint64_t site) 
 }
 
 bool has_left(const Context& ctx, uint64_t handle, uint32_t size) {
-  const std::optional<Home> home = find_home(ctx, handle);
+  const std::optional<ReferenceHome> home = find_home(ctx, handle);
   if (!home) return false;
   if (home->reach.size() == 0) return ir::handle_away(handle) == ir::kLost;
   return !home->reach.covers(ir::handle_offset(handle), size);
@@ -241,7 +241,7 @@ uint32_t resolve_exactly(const Context& ctx, uint64_t handle, uint32_t type) {
 }
 
 uint64_t resolve_string(const Context& ctx, uint64_t handle, uint32_t capacity, uint32_t unit) {
-  const std::optional<Home> home = find_home(ctx, handle);
+  const std::optional<ReferenceHome> home = find_home(ctx, handle);
   const uint32_t offset = ir::handle_offset(handle);
   if (!home || !home->reach.covers(offset, 1)) return 0;
   if (touches_slot(*home, offset, uint64_t{offset} + 1)) return 0;

@@ -10,7 +10,7 @@
 namespace vm {
 
 // Bytes that a handle names: an area or an exposed local, from its beginning.
-struct Home {
+struct ReferenceHome {
   uint32_t data = 0;
   ir::Reach reach;  // of the variable that the handle was taken from; no bytes: it is lost
   const uint32_t* slots = nullptr;  // offsets that nothing may touch, sorted
@@ -18,7 +18,7 @@ struct Home {
 };
 
 // What the handle's segment names; nullopt when it is gone or never was.
-std::optional<Home> find_home(const Context& ctx, uint64_t handle);
+std::optional<ReferenceHome> find_home(const Context& ctx, uint64_t handle);
 // The handle moved by `bytes`, with their sign (ir/types/reach.h). Keeps the variable in `known`.
 uint64_t move_handle(const Context& ctx, uint64_t handle, uint64_t bytes, KnownReach& known);
 // Data offset of `size` bytes of its variable that hold no slot; 0 when they are not there. Keeps

@@ -47,6 +47,7 @@ FLOAT_OPERATION(float_quotient, /, "div")
   STC_BINARY(DIV_##suffix, T, T, T, float_quotient(b, c))   \
   STC_UNARY(SQRT_##suffix, T, T, ir::with_nan_of(std::sqrt(b), b, b))
 STC_FLOATS(FLOATS)
+#undef FLOATS
 
 #define NEGATION(suffix, T) STC_UNARY(NEG_##suffix, T, T, Wide<T>(0) - Wide<T>(b))
 STC_WORDS(NEGATION)

@@ -21,8 +21,8 @@ inline constexpr uint32_t kTruthInputs = 6;
 // Where most variables of a series are: then the first inputs are read from there, whatever the
 // rows say, and only the others from a base of their own. kNoHome: all are.
 inline constexpr uint32_t kHomeInputs = 4;
-using Home = uint16_t;
-inline constexpr Home kNoHome = 3;  // else an ir::Base
+using SlotHome = uint16_t;
+inline constexpr SlotHome kNoHome = 3;  // else an ir::Base
 inline constexpr uint32_t kUnitsOfTruthRow = 3;
 
 // out := bit number (in[0] + 2 in[1] + ... + 32 in[5]) of `table`. All are BOOLs that are clean

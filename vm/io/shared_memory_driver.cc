@@ -15,14 +15,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr uint32_t kBytes = 65536;  // each way: all that a map can name
+constexpr uint32_t kImageBytes = 65536;  // each way: all that a map can name
 constexpr int kReadAttempts = 100;
 constexpr size_t kSequence = 8;  // bytes; the time and the data follow it
 constexpr size_t kTime = 8;
 constexpr uint64_t kInputsAt = sizeof(SharedHeader);
-constexpr uint64_t kOutputsAt = kInputsAt + sizeof(SharedBlock) + kBytes;
-constexpr size_t kSize = kOutputsAt + sizeof(SharedBlock) + kBytes;
-constexpr SharedHeader kHeader{kSharedMagic, sizeof(SharedHeader), kBytes, kBytes};
+constexpr uint64_t kOutputsAt = kInputsAt + sizeof(SharedBlock) + kImageBytes;
+constexpr size_t kSize = kOutputsAt + sizeof(SharedBlock) + kImageBytes;
+constexpr SharedHeader kHeader{kSharedMagic, sizeof(SharedHeader), kImageBytes, kImageBytes};
 
 uint64_t now_ns() {
   return static_cast<uint64_t>(std::chrono::steady_clock::now().time_since_epoch() /
@@ -152,9 +152,9 @@ class SharedMemoryDriver : public IoDriver {
   uint64_t read_ns_ = 0;   // when the inputs were written; 0: there are none
   bool whole_ = false;     // they are the newest
   // Each begins with its time.
-  base::Bytes reading_ = base::Bytes(kTime + kBytes);
-  base::Bytes inputs_ = base::Bytes(kTime + kBytes);
-  base::Bytes outputs_ = base::Bytes(kTime + kBytes);
+  base::Bytes reading_ = base::Bytes(kTime + kImageBytes);
+  base::Bytes inputs_ = base::Bytes(kTime + kImageBytes);
+  base::Bytes outputs_ = base::Bytes(kTime + kImageBytes);
 };
 
 mode_t mode_of(const std::string& access) {
@@ -172,9 +172,9 @@ base::Result<std::unique_ptr<IoDriver>> make_shared_memory_driver(const ir::Devi
     return base::Error{base::Refusal::kDeviceFailed,
                        "`" + name + "` is no name of shared memory: /press"};
   }
-  return std::unique_ptr<IoDriver>(std::make_unique<SharedMemoryDriver>(
-      name, mode_of(ir::setting(device, "access")),
-      ir::number_setting(device, "timeout_ms") * 1'000'000));
+  return std::unique_ptr<IoDriver>(
+      std::make_unique<SharedMemoryDriver>(name, mode_of(ir::setting(device, "access")),
+                                           ir::number_setting(device, "timeout_ms") * 1'000'000));
 }
 
 }  // namespace vm

@@ -77,7 +77,7 @@ class Leaves {
                                  places_.begin());
   }
   // False: there is no room.
-  bool add(Place place, Home home) {
+  bool add(Place place, SlotHome home) {
     if (place == kNowhere || has(place)) return true;
     const bool away = home != kNoHome && place >> 16 != home;
     for (uint32_t k = away ? kHomeInputs : 0; k < kTruthInputs; ++k) {
@@ -87,7 +87,7 @@ class Leaves {
     }
     return false;
   }
-  bool add(const Leaves& others, Home home) {
+  bool add(const Leaves& others, SlotHome home) {
     return std::all_of(others.places_.begin(), others.places_.end(),
                        [&](Place place) { return add(place, home); });
   }
@@ -119,7 +119,7 @@ class Maker {
   Maker(const base::Bytes& pool, Place at_home)
       : pool_(pool),
         at_home_(at_home),
-        home_(at_home == kNowhere ? kNoHome : static_cast<Home>(at_home >> 16)),
+        home_(at_home == kNowhere ? kNoHome : static_cast<SlotHome>(at_home >> 16)),
         terms_(1) {}
 
   // False: with that home there are no rows for the line.
@@ -148,7 +148,7 @@ class Maker {
 
   const base::Bytes& pool_;
   Place at_home_;
-  Home home_;
+  SlotHome home_;
   std::vector<Term> terms_;  // the first stands for operands that there are not
   std::vector<Waiting> waiting_;
   std::vector<TruthRow> rows_;
@@ -340,7 +340,7 @@ bool make_rows(std::span<const ir::Unit> code, const base::Bytes& pool, const La
     if (!maker.take(code[series.first + i], reads, series.first + i)) return false;
   }
   series.rows = maker.finish();
-  series.home = at_home == kNowhere ? kNoHome : static_cast<Home>(at_home >> 16);
+  series.home = at_home == kNowhere ? kNoHome : static_cast<SlotHome>(at_home >> 16);
   return true;
 }
 

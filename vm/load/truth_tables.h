@@ -18,7 +18,7 @@ namespace vm {
 struct TruthSeries {
   uint32_t first = 0;  // unit of the line
   uint32_t units = 0;
-  Home home = kNoHome;
+  SlotHome home = kNoHome;
   std::vector<TruthRow> rows;
 };
 

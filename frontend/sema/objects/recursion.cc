@@ -20,7 +20,7 @@ constexpr uint32_t kUsualDepth = 16;
 constexpr uint32_t kLeastDepth = 4;
 constexpr uint32_t kUsualActivations = 64;
 
-struct Frame {
+struct Visit {
   uint32_t pou;
   size_t next = 0;
 };
@@ -104,10 +104,10 @@ std::vector<uint32_t> Objects::find_circle(std::vector<uint8_t>& marks, uint32_t
   enum Mark : uint8_t { kNew, kOpen, kDone };
   for (; start < sema_.declared.pous.size(); ++start) {
     if (marks[start] != kNew) continue;
-    std::vector<Frame> stack{{start}};
+    std::vector<Visit> stack{{start}};
     marks[start] = kOpen;
     while (!stack.empty()) {
-      Frame& top = stack.back();
+      Visit& top = stack.back();
       const PouInfo& info = sema_.declared.pous[top.pou];
       const bool declared =
           info.id.valid() && sema_.program.pous[info.id.index].recursion_depth != 0;
@@ -126,7 +126,7 @@ std::vector<uint32_t> Objects::find_circle(std::vector<uint8_t>& marks, uint32_t
           path.insert(path.begin(), stack[i].pou);
           if (stack[i].pou == callee) break;
         }
-        for (const Frame& frame : stack) marks[frame.pou] = kNew;  // to be looked at again
+        for (const Visit& frame : stack) marks[frame.pou] = kNew;  // to be looked at again
         return path;
       }
     }

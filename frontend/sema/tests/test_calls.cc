@@ -5,7 +5,7 @@
 namespace frontend {
 namespace {
 
-constexpr TestCallRow kRows[] = {
+constexpr TestCallRow kTestCalls[] = {
 #define TEST_CALL(id, name, fewest, most, parameters, meaning) \
   {TestCall::id, name, fewest, most, parameters, meaning},
 #include "frontend/sema/tests/test_calls.def"
@@ -14,10 +14,10 @@ constexpr TestCallRow kRows[] = {
 
 }  // namespace
 
-std::span<const TestCallRow> test_calls() { return kRows; }
+std::span<const TestCallRow> test_calls() { return kTestCalls; }
 
 const TestCallRow* find_test_call(std::string_view name) {
-  for (const TestCallRow& row : kRows) {
+  for (const TestCallRow& row : kTestCalls) {
     if (ir::same_name(row.name, name)) return &row;
   }
   return nullptr;

@@ -8,22 +8,21 @@ namespace frontend {
 namespace {
 
 using ir::Group;
-using ir::Kind;
 
-const NameMap<Kind>& kinds_by_name() {
-  static const NameMap<Kind> kTable = [] {
-    NameMap<Kind> table;
+const NameMap<ir::Kind>& kinds_by_name() {
+  static const NameMap<ir::Kind> kTable = [] {
+    NameMap<ir::Kind> table;
     for (uint32_t i = 0; i < ir::kElementaryCount; ++i) {
-      table.emplace(ir::elementary_name(static_cast<Kind>(i)), static_cast<Kind>(i));
+      table.emplace(ir::elementary_name(static_cast<ir::Kind>(i)), static_cast<ir::Kind>(i));
     }
-    table.emplace("TOD", Kind::kTod);
-    table.emplace("LTOD", Kind::kLtod);
-    table.emplace("DT", Kind::kDt);
-    table.emplace("LDT", Kind::kLdt);
-    table.emplace("STRING", Kind::kString);
-    table.emplace("WSTRING", Kind::kWstring);
-    table.emplace("USTRING", Kind::kString);  // docs/adr/0008-characters.md
-    table.emplace("UCHAR", Kind::kChar);
+    table.emplace("TOD", ir::Kind::kTod);
+    table.emplace("LTOD", ir::Kind::kLtod);
+    table.emplace("DT", ir::Kind::kDt);
+    table.emplace("LDT", ir::Kind::kLdt);
+    table.emplace("STRING", ir::Kind::kString);
+    table.emplace("WSTRING", ir::Kind::kWstring);
+    table.emplace("USTRING", ir::Kind::kString);  // docs/adr/0008-characters.md
+    table.emplace("UCHAR", ir::Kind::kChar);
     return table;
   }();
   return kTable;
@@ -69,11 +68,11 @@ Fit enum_fit(const ir::TypeTable& types, ir::TypeId from, ir::TypeId to, Dialect
 }
 
 // Long forms hold everything that the short ones hold.
-Fit time_fit(Kind from, Kind to) {
-  constexpr std::pair<Kind, Kind> kWider[] = {{Kind::kTime, Kind::kLtime},
-                                              {Kind::kDate, Kind::kLdate},
-                                              {Kind::kTod, Kind::kLtod},
-                                              {Kind::kDt, Kind::kLdt}};
+Fit time_fit(ir::Kind from, ir::Kind to) {
+  constexpr std::pair<ir::Kind, ir::Kind> kWider[] = {{ir::Kind::kTime, ir::Kind::kLtime},
+                                                      {ir::Kind::kDate, ir::Kind::kLdate},
+                                                      {ir::Kind::kTod, ir::Kind::kLtod},
+                                                      {ir::Kind::kDt, ir::Kind::kLdt}};
   for (auto [narrow, wide] : kWider) {
     if (from == narrow && to == wide) return Fit::kSame;
     if (from == wide && to == narrow) return Fit::kNarrowing;
@@ -82,17 +81,17 @@ Fit time_fit(Kind from, Kind to) {
 }
 
 ir::TypeId signed_holding(const ir::TypeTable& types, uint32_t magnitude_bits) {
-  Kind kind = magnitude_bits <= 7    ? Kind::kSint
-              : magnitude_bits <= 15 ? Kind::kInt
-              : magnitude_bits <= 31 ? Kind::kDint
-                                     : Kind::kLint;
+  ir::Kind kind = magnitude_bits <= 7    ? ir::Kind::kSint
+                  : magnitude_bits <= 15 ? ir::Kind::kInt
+                  : magnitude_bits <= 31 ? ir::Kind::kDint
+                                         : ir::Kind::kLint;
   return types.elementary(kind);
 }
 
-constexpr Traits traits_of_kind(Kind kind, Group group) {
+constexpr Traits traits_of_kind(ir::Kind kind, Group group) {
   Traits traits;
-  traits.boolean = kind == Kind::kBool;
-  traits.bits = group == Group::kBit && kind != Kind::kBool;
+  traits.boolean = kind == ir::Kind::kBool;
+  traits.bits = group == Group::kBit && kind != ir::Kind::kBool;
   traits.integer = group == Group::kSigned || group == Group::kUnsigned;
   traits.real = group == Group::kReal;
   traits.duration = group == Group::kDuration;
@@ -102,50 +101,51 @@ constexpr Traits traits_of_kind(Kind kind, Group group) {
 }
 
 constexpr Traits kTraits[ir::kElementaryCount] = {
-#define ELEMENTARY(id, name, scalar, group) traits_of_kind(Kind::id, Group::group),
+#define ELEMENTARY(id, name, scalar, group) traits_of_kind(ir::Kind::id, Group::group),
 #include "ir/types/elementary.def"
 #undef ELEMENTARY
 };
 
 }  // namespace
 
-std::optional<Kind> kind_of_name(std::string_view name) {
+std::optional<ir::Kind> kind_of_name(std::string_view name) {
   auto found = kinds_by_name().find(name);
   if (found == kinds_by_name().end()) return std::nullopt;
   return found->second;
 }
 
-std::optional<Kind> kind_of_address_name(std::string_view name) {
-  if (ir::same_name(name, "PVOID")) return Kind::kUlint;
+std::optional<ir::Kind> kind_of_address_name(std::string_view name) {
+  if (ir::same_name(name, "PVOID")) return ir::Kind::kUlint;
   if (name.size() > 2 && name.substr(0, 2) == "__") name.remove_prefix(2);
-  if (ir::same_name(name, "XINT")) return Kind::kLint;
-  if (ir::same_name(name, "UXINT")) return Kind::kUlint;
-  if (ir::same_name(name, "XWORD")) return Kind::kLword;
+  if (ir::same_name(name, "XINT")) return ir::Kind::kLint;
+  if (ir::same_name(name, "UXINT")) return ir::Kind::kUlint;
+  if (ir::same_name(name, "XWORD")) return ir::Kind::kLword;
   return std::nullopt;
 }
 
 bool is_enum(const ir::TypeTable& types, ir::TypeId type) {
   type = without_range(types, type);
-  return type.valid() && types[type].kind == Kind::kEnum;
+  return type.valid() && types[type].kind == ir::Kind::kEnum;
 }
 
 bool is_string(const ir::TypeTable& types, ir::TypeId type) {
-  return type.valid() && (types[type].kind == Kind::kString || types[type].kind == Kind::kWstring);
+  return type.valid() &&
+         (types[type].kind == ir::Kind::kString || types[type].kind == ir::Kind::kWstring);
 }
 
 bool is_time_of_day(const ir::TypeTable& types, ir::TypeId type) {
   if (!type.valid() || !types.is_scalar(type)) return false;
-  const Kind kind = types.root_kind(type);
-  return kind == Kind::kTod || kind == Kind::kLtod;
+  const ir::Kind kind = types.root_kind(type);
+  return kind == ir::Kind::kTod || kind == ir::Kind::kLtod;
 }
 
 Traits traits_of(const ir::TypeTable& types, ir::TypeId type) {
   type = without_range(types, type);
   if (!type.valid()) return {};
-  const Kind kind = types[type].kind;
+  const ir::Kind kind = types[type].kind;
   if (ir::is_elementary(kind)) return kTraits[static_cast<size_t>(kind)];
   Traits traits;
-  traits.enumeration = kind == Kind::kEnum;
+  traits.enumeration = kind == ir::Kind::kEnum;
   return traits;
 }
 
@@ -179,7 +179,7 @@ ir::TypeId common_type(const ir::TypeTable& types, ir::TypeId a, ir::TypeId b, D
   if (to_a) return a;
   Traits ta = traits_of(types, a);
   Traits tb = traits_of(types, b);
-  if (ta.real || tb.real) return types.elementary(Kind::kLreal);
+  if (ta.real || tb.real) return types.elementary(ir::Kind::kLreal);
   if (ta.enumeration) return b;
   if (tb.enumeration) return a;
   if (!number_like(ta) || !number_like(tb)) return {};

@@ -6,15 +6,14 @@ namespace frontend {
 namespace {
 
 using ir::Group;
-using ir::Kind;
 
-bool is_integer_kind(Kind kind) {
+bool is_integer_kind(ir::Kind kind) {
   Group group = ir::elementary_group(kind);
   return group == Group::kSigned || group == Group::kUnsigned;
 }
 
-bool is_bit_string(Kind kind) {
-  return ir::elementary_group(kind) == Group::kBit && kind != Kind::kBool;
+bool is_bit_string(ir::Kind kind) {
+  return ir::elementary_group(kind) == Group::kBit && kind != ir::Kind::kBool;
 }
 
 bool take_front(std::string_view& text, std::string_view word) {
@@ -32,7 +31,7 @@ bool take_back(std::string_view& text, std::string_view word) {
 }
 
 // DINT, and UXINT in TO_UXINT, which no other function could be called.
-std::optional<Kind> kind_of_conversion(std::string_view name) {
+std::optional<ir::Kind> kind_of_conversion(std::string_view name) {
   const auto kind = kind_of_name(name);
   return kind ? kind : kind_of_address_name(name);
 }
@@ -46,7 +45,7 @@ std::optional<Conversion> between(std::string_view from, std::string_view to) {
     conversion.bcd = Conversion::Bcd::kTo;
   }
   conversion.any_source = from.empty() || ir::same_name(from, "ANY");
-  auto source = conversion.any_source ? Kind::kBool : kind_of_conversion(from);
+  auto source = conversion.any_source ? ir::Kind::kBool : kind_of_conversion(from);
   auto target = kind_of_conversion(to);
   if (!source || !target) return std::nullopt;
   conversion.from = *source;
@@ -67,7 +66,7 @@ std::optional<Conversion> between(std::string_view from, std::string_view to) {
 }
 
 std::optional<Conversion> truncation(std::string_view from, std::string_view to) {
-  auto source = from.empty() ? Kind::kReal : kind_of_conversion(from);
+  auto source = from.empty() ? ir::Kind::kReal : kind_of_conversion(from);
   auto target = kind_of_conversion(to);
   if (!source || !target || ir::elementary_group(*source) != Group::kReal ||
       !is_integer_kind(*target)) {
@@ -102,14 +101,16 @@ std::optional<Conversion> conversion_of_name(std::string_view name) {
 
 // A character is a code or a piece of text, and nothing else; a day has no time of
 // day, and the other way round.
-bool is_convertible(Kind from, Kind to) {
-  auto is_text = [](Kind kind) { return kind == Kind::kString || kind == Kind::kWstring; };
-  auto is_character = [](Kind kind) { return ir::elementary_group(kind) == Group::kChar; };
-  auto goes_with_character = [&](Kind kind) {
+bool is_convertible(ir::Kind from, ir::Kind to) {
+  auto is_text = [](ir::Kind kind) {
+    return kind == ir::Kind::kString || kind == ir::Kind::kWstring;
+  };
+  auto is_character = [](ir::Kind kind) { return ir::elementary_group(kind) == Group::kChar; };
+  auto goes_with_character = [&](ir::Kind kind) {
     return is_character(kind) || is_text(kind) || is_integer_kind(kind) || is_bit_string(kind);
   };
-  auto is_day = [](Kind kind) { return kind == Kind::kDate || kind == Kind::kLdate; };
-  auto is_clock = [](Kind kind) { return kind == Kind::kTod || kind == Kind::kLtod; };
+  auto is_day = [](ir::Kind kind) { return kind == ir::Kind::kDate || kind == ir::Kind::kLdate; };
+  auto is_clock = [](ir::Kind kind) { return kind == ir::Kind::kTod || kind == ir::Kind::kLtod; };
   if (is_character(from)) return goes_with_character(to);
   if (is_character(to)) return goes_with_character(from);
   return !(is_day(from) && is_clock(to)) && !(is_clock(from) && is_day(to));
