@@ -37,6 +37,10 @@ inline bool stands_for_several(const FateRow& row) {
   return std::string_view(row.reason).ends_with(kMoreLikeIt);
 }
 
+// The reason of a row of a union's member that has another type, while the union keeps its bytes:
+// no step belongs to it, and nothing is counted.
+inline constexpr std::string_view kAnotherView = "reads bytes that stay as another type";
+
 // How the reason of a row of something renamed begins; a rule moves parts under this word, too.
 inline constexpr std::string_view kRenamed = "renamed from `";
 inline bool is_renamed(const FateRow& row) { return row.reason.starts_with(kRenamed); }

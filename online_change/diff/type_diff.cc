@@ -1,11 +1,12 @@
 #include "online_change/diff/type_diff.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "base/limits.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/diff_ops.h"
+#include "online_change/diff/member_names.h"
+#include "online_change/diff/union_bytes.h"
 
 namespace online_change {
 namespace {
@@ -19,24 +20,6 @@ using ir::TypeId;
 // plant says.
 constexpr const char* kBecomesConstant = "constant";
 constexpr const char* kBecomesInput = "an input now";
-
-// Members by name; a program may have very many.
-class MemberNames {
- public:
-  static constexpr uint32_t kNone = 0xffffffffu;
-  explicit MemberNames(const ir::Type& type) {
-    for (uint32_t i = 0; i < type.members.size(); ++i) {
-      numbers_.emplace(ir::fold_name(type.members[i].name), i);
-    }
-  }
-  uint32_t find(const Member& member) const {
-    auto found = numbers_.find(ir::fold_name(member.name));
-    return found == numbers_.end() ? kNone : found->second;
-  }
-
- private:
-  std::unordered_map<std::string, uint32_t> numbers_;
-};
 
 // The whole value is initialised: nothing of the old one can be used.
 TypeDiff without_rule(std::string old_text, std::string new_text, uint32_t size, uint64_t leaves) {
@@ -63,27 +46,6 @@ bool was_another(const ir::Image& image, TypeId type, const std::string& name) {
 bool is_input(const Member& member) { return member.address.area == ir::DirectArea::kInput; }
 
 }  // namespace
-
-bool keeps_union_bytes(const ir::Image& old_image, TypeId old_type, const ir::Image& new_image,
-                       TypeId new_type) {
-  if (!old_image.types.overlaps(old_type) || !new_image.types.overlaps(new_type)) return false;
-  const MemberNames names(old_image.types[old_type]);
-  const std::vector<Member>& members = new_image.types[new_type].members;
-  bool any = false;
-  for (size_t i = 0; i < members.size(); ++i) {
-    const uint32_t twin = names.find(members[i]);
-    if (twin == MemberNames::kNone) continue;
-    const bool same_place = old_image.layouts[old_type].member_offsets[twin] ==
-                            new_image.layouts[new_type].member_offsets[i];
-    if (!same_place || !ir::same_value_type(old_image.types, old_image.layouts,
-                                            old_image.types[old_type].members[twin].type,
-                                            new_image.types, new_image.layouts, members[i].type)) {
-      return false;
-    }
-    any = true;
-  }
-  return any;
-}
 
 bool same_instance_type(const ir::Image& old_image, TypeId old_type, const ir::Image& new_image,
                         TypeId new_type) {
@@ -167,9 +129,9 @@ TypeDiff TypeDiffer::compare_values(TypeId old_type, TypeId new_type) {
 }
 
 // What lies on top of each other has no members that could be carried over one by one, but its
-// bytes stay while members that live on say what they are (case 74): whatever comes or goes beside
-// them is another view. A member that lives on with another type would read the bytes as something
-// that they are not.
+// bytes stay while members that live on say what they are (case 74): whatever comes, goes or gets
+// another type beside them is another view. A member with another type whose bytes no other tells
+// of would read them as something that they are not.
 TypeDiff TypeDiffer::compare_overlapping(TypeId old_type, TypeId new_type) {
   uint32_t size = new_.layouts[new_type].size;
   const bool alike =
@@ -181,10 +143,22 @@ TypeDiff TypeDiffer::compare_overlapping(TypeId old_type, TypeId new_type) {
   TypeDiff diff;
   diff.leaves = leaves(new_, new_type);
   diff.same = alike;
+  if (!alike) add_views(diff, old_type, new_type);
   const uint32_t kept = std::min(size, old_.layouts[old_type].size);
   diff.ops.push_back(make_op(DiffKind::kSame, 0, 0, kept, diff.leaves));
   if (kept < size) diff.ops.push_back(make_op(DiffKind::kInitialise, 0, kept, size - kept, 0));
   return diff;
+}
+
+// Members that lie on bytes which stay, and read them as another type now.
+void TypeDiffer::add_views(TypeDiff& diff, TypeId old_type, TypeId new_type) const {
+  for (const UnionView& view : union_views(old_, old_type, new_, new_type)) {
+    if (view.same) continue;
+    const Member& from = old_.types[old_type].members[view.old_member];
+    const Member& to = new_.types[new_type].members[view.new_member];
+    diff.rows.push_back(make_row(Fate::kConverted, "." + to.name, old_.types.text(from.type),
+                                 new_.types.text(to.type), std::string(kAnotherView), 1));
+  }
 }
 
 // On the way back, what the way there converted must be a conversion too, even if every value

@@ -103,6 +103,7 @@ class TypeDiffer {
   TypeDiff compare_members(ir::TypeId old_type, ir::TypeId new_type, bool is_area);
   TypeDiff compare_arrays(ir::TypeId old_type, ir::TypeId new_type);
   TypeDiff compare_overlapping(ir::TypeId old_type, ir::TypeId new_type);
+  void add_views(TypeDiff& diff, ir::TypeId old_type, ir::TypeId new_type) const;
   TypeDiff compare_leaves(ir::TypeId old_type, ir::TypeId new_type);
   TypeDiff without_conversion(ir::TypeId old_type, ir::TypeId new_type);
   void add_member(TypeDiff& diff, const ir::Member& old_member, uint32_t from,
@@ -144,11 +145,6 @@ std::string rename_proposal(const std::string& old_name);
 // "; {migration of := 'B', from := 'A'} FUNCTION A_to_B ...": what keeps values where another type
 // takes the place, for the reason of a row.
 std::string migration_hint(const ir::Type& before, const ir::Type& after);
-
-// Two unions that have members in common, each of one type and at one place: these say what the
-// bytes of both are.
-bool keeps_union_bytes(const ir::Image& old_image, ir::TypeId old_type, const ir::Image& new_image,
-                       ir::TypeId new_type);
 
 // A function block or program of the same name, or one that a migration of either version says the
 // other was: instances live on.

@@ -7,6 +7,7 @@
 #include "ir/bytecode/renames.h"
 #include "ir/types/stamps.h"
 #include "online_change/diff/type_diff.h"
+#include "online_change/diff/union_bytes.h"
 #include "online_change/diff/value_conversion.h"
 #include "online_change/package/package.h"
 

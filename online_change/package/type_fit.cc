@@ -5,6 +5,7 @@
 #include "base/limits.h"
 #include "online_change/diff/areas.h"
 #include "online_change/diff/type_diff.h"
+#include "online_change/diff/union_bytes.h"
 #include "online_change/diff/value_conversion.h"
 
 namespace online_change {

@@ -243,9 +243,11 @@ void Planner::apply_in_outs(const Carried& instance, const DiffOp& op) {
   put_initial(step_for(op, instance.to, kNoFate), {});
 }
 
+// Of what has no step.
 void Planner::add_dropped_rows(const Carried& instance) {
   const std::vector<FateRow>& rows = instance.diff->rows;
   for (uint32_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].reason == kAnotherView) row_of(instance, i, rows[i].count);
     if (rows[i].fate != Fate::kDropped || rows[i].count == 0) continue;
     plan_.counts.dropped += rows[i].count;
     row_of(instance, i, rows[i].count);
