@@ -1,5 +1,6 @@
 #include "adapters/plcopen/expression_boxes.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>

@@ -10,11 +10,11 @@
 namespace online_change {
 namespace {
 
-using Range = std::pair<uint64_t, uint64_t>;  // bytes: begin, end
+using ByteRange = std::pair<uint64_t, uint64_t>;  // bytes: begin, end
 
 // Of `ranges`, which are sorted by their begin: is each byte of `range` in one?
-bool covers(const std::vector<Range>& ranges, Range range) {
-  for (const Range& other : ranges) {
+bool covers(const std::vector<ByteRange>& ranges, ByteRange range) {
+  for (const ByteRange& other : ranges) {
     if (other.first > range.first) break;
     range.first = std::max(range.first, other.second);
   }
@@ -51,10 +51,10 @@ bool keeps_union_bytes(const ir::Image& old_image, ir::TypeId old_type, const ir
   if (!old_image.types.overlaps(old_type) || !new_image.types.overlaps(new_type)) return false;
   const auto range_of = [](const ir::Image& image, ir::TypeId type, uint32_t member) {
     const uint64_t begin = image.layouts[type].member_offsets[member];
-    return Range(begin, begin + image.layouts[image.types[type].members[member].type].size);
+    return ByteRange(begin, begin + image.layouts[image.types[type].members[member].type].size);
   };
-  std::vector<Range> kept;
-  std::vector<Range> changed;
+  std::vector<ByteRange> kept;
+  std::vector<ByteRange> changed;
   for (const UnionView& view : union_views(old_image, old_type, new_image, new_type)) {
     (view.same ? kept : changed).push_back(range_of(new_image, new_type, view.new_member));
     if (view.same) continue;
@@ -66,7 +66,7 @@ bool keeps_union_bytes(const ir::Image& old_image, ir::TypeId old_type, const ir
   }
   std::sort(kept.begin(), kept.end());
   return !kept.empty() && std::all_of(changed.begin(), changed.end(),
-                                      [&](const Range& range) { return covers(kept, range); });
+                                      [&](const ByteRange& range) { return covers(kept, range); });
 }
 
 }  // namespace online_change
