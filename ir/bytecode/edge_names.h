@@ -16,7 +16,8 @@ namespace ir {
 std::string_view edge_of_name(std::string_view name);
 
 // Do two versions' types differ in the names of such variables? By sums of hashes, so a collision
-// would hide a difference. Cost: each name of a member of a POU.
+// would hide a difference. Cost: each name of a member of a POU, and nothing for one and the same
+// table.
 bool edges_differ(const TypeTable& old_types, const TypeTable& types);
 
 // Adds to `sources`, for each member of `next` the one of `old` that it was (RenameRules::kNone):
