@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "adapters/plcopen/drawing.h"
+#include "adapters/xml/comparison.h"
 #include "base/name_case.h"
 
 namespace plcopen {
@@ -15,19 +16,9 @@ using network::Modifier;
 
 namespace {
 
-struct Comparison {
-  const char* box;
-  const char* sign;
-};
-constexpr Comparison kComparisons[] = {{"GT", ">"},  {"GE", ">="}, {"EQ", "="},
-                                       {"LE", "<="}, {"LT", "<"},  {"NE", "<>"}};
-
-const Comparison* comparison_of(const Element& element) {
-  if (element.kind != Kind::kBlock || !element.operand.empty()) return nullptr;
-  for (const Comparison& each : kComparisons) {
-    if (base::same_name(each.box, element.type.text)) return &each;
-  }
-  return nullptr;
+bool is_comparison(const Element& element) {
+  return element.kind == Kind::kBlock && element.operand.empty() &&
+         !xml::comparison_sign(element.type.text).empty();
 }
 
 // `all`: all elements. Is each input a variable or number by itself, without EN?
@@ -38,17 +29,12 @@ bool is_of_variables(const Element& box, const std::vector<Element>& all) {
   });
 }
 
-std::string text_of(const Element& box, const Comparison& how, const std::vector<Element>& all) {
-  std::string listed;
-  bool plain = box.inputs.size() == 2;
+std::string text_of(const Element& box, const std::vector<Element>& all) {
+  std::vector<std::string> operands;
   for (const Input& input : box.inputs) {
-    const std::string& operand = all[input.from[0].element].operand.text;
-    plain = plain && operand.find_first_of(" (") == std::string::npos;
-    listed += (listed.empty() ? "" : ", ") + operand;
+    operands.push_back(all[input.from[0].element].operand.text);
   }
-  if (!plain) return std::string(how.box) + '(' + listed + ')';
-  const size_t comma = listed.find(", ");
-  return listed.substr(0, comma) + ' ' + how.sign + ' ' + listed.substr(comma + 2);
+  return xml::comparison_text(box.type.text, operands);
 }
 
 }  // namespace
@@ -69,13 +55,12 @@ void Drawing::compare_as_contacts() {
   }
   const uint32_t count = static_cast<uint32_t>(all.size());
   for (uint32_t i = 0; i < count; ++i) {
-    const Comparison* const how = comparison_of(all[i]);
-    if (how == nullptr || readers[i] == 0 || !as_power[i] || !is_of_variables(all[i], all))
-      continue;
+    const bool compares = is_comparison(all[i]) && is_of_variables(all[i], all);
+    if (!compares || readers[i] == 0 || !as_power[i]) continue;
     const bool negated =
         std::ranges::any_of(all[i].outputs, [](const network::Output& out) { return out.negated; });
     if (negated) continue;
-    const std::string text = text_of(all[i], *how, all);
+    const std::string text = text_of(all[i], all);
     for (const Input& input : all[i].inputs) {
       Element& source = all[input.from[0].element];
       if (--readers[input.from[0].element] != 0) continue;

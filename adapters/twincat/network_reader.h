@@ -72,6 +72,9 @@ class NetworkReader {
   void check_parallel(const Item& item, const std::vector<Item>& trees);
   std::vector<Link> branches(const std::vector<Item>& trees, const std::vector<Link>& from);
   std::vector<Link> contact(const Item& item, std::vector<Link> from);
+  std::vector<Link> contact(network::Text operand, Modifier modifier, std::vector<Link> from,
+                            Node at);
+  std::string compared(const Item& item) const;
   std::vector<Link> both(std::vector<Link> from, Wire wire, Node at);
 
   bool ladder_;

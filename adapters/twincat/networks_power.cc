@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "adapters/twincat/network_reader.h"
+#include "adapters/xml/comparison.h"
+#include "adapters/xml/operand.h"
 #include "base/limits.h"
 
 namespace twincat {
@@ -11,18 +13,24 @@ namespace twincat {
 using base::same_name;
 using network::Element;
 
+namespace {
+
+bool has_marked_pins(Node box) {
+  return std::ranges::any_of(items(box, "InputFlags"), [](const Item& mark) {
+    const std::string bits = mark ? member_text(mark.node, "Flags") : std::string();
+    return !bits.empty() && bits != "0";
+  });
+}
+
+}  // namespace
+
 // AND and OR of what is BOOL are series and branches.
 bool NetworkReader::is_logic(const Item& item) const {
   if (item.type != "BoxTreeBox" || flags_of(item.node) != 0) return false;
   const std::string type = member_text(item.node, "BoxType");
   if (!same_name(type, "AND") && !same_name(type, "OR")) return false;
   const std::vector<Item> pins = items(item.node, "InputItems");
-  const std::vector<Item> marks = items(item.node, "InputFlags");
-  const bool marked = std::any_of(marks.begin(), marks.end(), [](const Item& mark) {
-    const std::string bits = mark ? member_text(mark.node, "Flags") : std::string();
-    return !bits.empty() && bits != "0";
-  });
-  return !marked && texts(member(item.node, "InputParam"), "Names").empty() &&
+  return !has_marked_pins(item.node) && texts(member(item.node, "InputParam"), "Names").empty() &&
          std::all_of(pins.begin(), pins.end(),
                      [this](const Item& pin) { return pin && carries_power(pin); });
 }
@@ -38,22 +46,44 @@ bool NetworkReader::carries_power(const Item& item) const {
   const uint32_t output = leading_output(item.node).value_or(0);
   if (output < types.size()) return is_bool(types[output]);
   const std::string type = member_text(item.node, "BoxType");
-  for (const char* name : {"EQ", "NE", "LT", "LE", "GT", "GE"}) {
-    if (same_name(type, name)) return true;
-  }
-  return false;
+  return !xml::comparison_sign(type).empty();
 }
 
 std::vector<Link> NetworkReader::contact(const Item& item, std::vector<Link> from) {
   const Node operand = member(item.node, "Operand");
+  const network::Text text = this->operand(operand, "a contact");
+  const uint32_t flags = marks(operand, kNegation | kRising | kFalling, "a contact");
+  return contact(text, modifier_of(flags), std::move(from), item.node);
+}
+
+std::vector<Link> NetworkReader::contact(network::Text operand, Modifier modifier,
+                                         std::vector<Link> from, Node at) {
   Element out;
   out.kind = Kind::kContact;
-  out.operand = this->operand(operand, "a contact");
-  out.modifier = modifier_of(marks(operand, kNegation | kRising | kFalling, "a contact"));
+  out.operand = std::move(operand);
+  out.modifier = modifier;
   out.inputs.resize(1);
   out.outputs.resize(1);
-  connect(out.inputs[0], {std::move(from)}, item.node);
+  connect(out.inputs[0], {std::move(from)}, at);
   return {{push(std::move(out)), 0}};
+}
+
+// What a comparison of variables and numbers is as a contact; "": it is something else.
+std::string NetworkReader::compared(const Item& item) const {
+  if (item.type != "BoxTreeBox" || (flags_of(item.node) & ~kNegation) != 0) return {};
+  const std::string box = member_text(item.node, "BoxType");
+  const bool led_away = std::ranges::any_of(items(member(item.node, "OutputItems"), "OutputItems"),
+                                            [](const Item& pin) { return bool(pin); });
+  if (xml::comparison_sign(box).empty() || led_away || is_true(item.node, "EN")) return {};
+  std::vector<std::string> operands;
+  for (const Item& pin : items(item.node, "InputItems")) {
+    const Node operand = pin.type == "BoxTreeOperand" ? member(pin.node, "Operand") : Node();
+    if (!operand || flags_of(operand) != 0) return {};
+    operands.push_back(member_text(operand, "Operand"));
+    if (!xml::is_operand(operands.back())) return {};
+  }
+  return operands.size() < 2 || has_marked_pins(item.node) ? std::string()
+                                                           : xml::comparison_text(box, operands);
 }
 
 // Power that also needs the wire.
@@ -167,6 +197,9 @@ std::vector<Link> NetworkReader::power(const Item& item, std::vector<Link> from)
     if (same_name(member_text(item.node, "BoxType"), "OR")) return branches(pins, from);
     for (const Item& pin : pins) from = power(pin, std::move(from));
     return from;
+  }
+  if (const std::string text = compared(item); !text.empty()) {
+    return contact({text, {}}, modifier_of(flags_of(item.node)), std::move(from), item.node);
   }
   // What begins where the branch does has its power already: that of a box is its output.
   if (feed_ != rail() && any_below(item, is_rail)) {

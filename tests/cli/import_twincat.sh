@@ -338,6 +338,26 @@ said 'note\[W0075\]: POU Drawn, network [12]: the ladder became FBD: power arriv
 sed 's/a, b, c : BOOL/a, b, c, and1, and2 : BOOL/' drawn.TcPOU >names.TcPOU
 expect 0 stc check names.TcPOU
 
+# A comparison of variables stands among the contacts as one, whatever is in front of it; what sees an
+# edge, has a pin with a mark or gives its result away is a box.
+numbers="<o>$(op n 0 INT)</o><o>$(op 5 0 INT)</o>"
+greater() { printf '%s' "$numbers" | box GT "${1:-}"; }
+rung() { printf '<o t="BoxTreeBox" n="RValue"><v n="BoxType">"AND"</v><l2 n="InputItems">%s</l2></o>' "$1"; }
+rung_of() { printf '<o t="BoxTreeAssign">%s%s</o>' "$(to a)" "$(rung "$1")" | items '' | drawn Ld; }
+rung_of "<o t=\"BoxTreeOperand\">$(op b)</o>$(greater)$(greater "$(mark 1)")"
+expect 0 stc import drawn.TcPOU -o drawn_compared
+grep -Eqx '  .--\[ b \]--\[ n > 5 \]--\[/ n > 5 \]-+\( a \)--.' drawn_compared/Drawn.st || fail "comparisons"
+if grep -q W0075 out err; then fail "the ladder is one"; fi
+printf '<o>%s</o><o>%s</o><o>%s</o>' "$(op n 0 INT)" "$(op 3 0 INT)" "$(op 9 0 INT)" >three
+rung_of "$(box LT '' <three)<o t=\"BoxTreeOperand\">$(op b 16)</o>"
+expect 0 stc import drawn.TcPOU -o drawn_three
+grep -Eqx '  .--\[ LT\(n, 3, 9\) \]--\[P b \]-+\( a \)--.' drawn_three/Drawn.st || fail "three operands"
+for odd in "$(mark 16)" '<l2 n="InputFlags" cet="Flags"><o><v n="Flags">1</v></o></l2>' "$(to c)"; do
+  rung_of "<o t=\"BoxTreeOperand\">$(op b)</o>$(greater "$odd")"
+  stc import drawn.TcPOU -o drawn_box --force >out 2>err || true
+  if grep -q '\[ n > 5 \]' drawn_box/Drawn.st; then fail "no contact says $odd"; fi
+done
+
 # Files that are missing, of another kind, or no XML.
 sed 's/ST_Data/ST_Gone/' plc/Plant.plcproj >plc/Gone.plcproj
 expect 1 stc import plc/Gone.plcproj -o gone
