@@ -2,30 +2,9 @@
 
 #include <cstring>
 
-#include "ir/types/value_text.h"
 #include "online_change/diff/stored_value.h"
 
 namespace online_change {
-namespace {
-
-using ir::TypeId;
-
-std::string value_text(const ir::Image& image, TypeId type, const uint8_t* at) {
-  if (!is_string(image, type)) {
-    return ir::scalar_text(image.types, type, load(image, type, at));
-  }
-  uint32_t unit = unit_of(image, type);
-  uint32_t size = image.layouts[type].size;
-  uint32_t length = 0;
-  for (; length + unit <= size; length += unit) {
-    if (at[length] == 0 && (unit == 1 || at[length + 1] == 0)) break;
-  }
-  std::string_view units(reinterpret_cast<const char*>(at), length);
-  return unit == 2 ? ir::wstring_text(units) : ir::string_text(units);
-}
-
-}  // namespace
-
 void know(UpdateStep& step, uint32_t index, std::span<const uint8_t> made, const uint8_t* value) {
   const size_t row = 1 + made.size() + step.size;
   base::Bytes& known = step.as<ConvertedValues>()->known;
@@ -60,11 +39,11 @@ bool Conversions::left_by_inverse(const ConvertedValues& how) {
 }
 
 std::string Conversions::old_text(const ConvertedValues& how, const uint8_t* value) const {
-  return value_text(from_, how.old_type, value);
+  return stored_text(from_, how.old_type, value);
 }
 
 std::string Conversions::new_text(const ConvertedValues& how, const uint8_t* value) const {
-  return value_text(to_, how.new_type, value);
+  return stored_text(to_, how.new_type, value);
 }
 
 }  // namespace online_change

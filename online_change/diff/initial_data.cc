@@ -41,18 +41,25 @@ bool InitialData::is_zero(uint32_t offset, uint32_t size) const {
 
 bool InitialData::equal(uint32_t offset, const InitialData& other, uint32_t other_offset,
                         uint32_t size) const {
+  return equal_bytes(offset, other, other_offset, size) == size;
+}
+
+uint32_t InitialData::equal_bytes(uint32_t offset, const InitialData& other, uint32_t other_offset,
+                                  uint32_t size) const {
   constexpr uint32_t kChunk = 256;
   uint8_t mine[kChunk];
   uint8_t theirs[kChunk];
-  if (!has_run(offset, size) && !other.has_run(other_offset, size)) return true;
+  if (!has_run(offset, size) && !other.has_run(other_offset, size)) return size;
   for (uint32_t done = 0; done < size;) {
-    uint32_t n = std::min(kChunk, size - done);
+    const uint32_t n = std::min(kChunk, size - done);
     read(offset + done, {mine, n});
     other.read(other_offset + done, {theirs, n});
-    if (std::memcmp(mine, theirs, n) != 0) return false;
+    if (std::memcmp(mine, theirs, n) != 0) {
+      return done + static_cast<uint32_t>(std::mismatch(mine, mine + n, theirs).first - mine);
+    }
     done += n;
   }
-  return true;
+  return size;
 }
 
 uint32_t InitialData::word(uint32_t offset) const {

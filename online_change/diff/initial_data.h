@@ -18,6 +18,9 @@ class InitialData {
   // Are `size` bytes here at `offset` the same as those there at `other_offset`?
   // Cost: the runs and bytes involved; constant where neither side has a run.
   bool equal(uint32_t offset, const InitialData& other, uint32_t other_offset, uint32_t size) const;
+  // As far as they are the same; `size`: all. Cost as before.
+  uint32_t equal_bytes(uint32_t offset, const InitialData& other, uint32_t other_offset,
+                       uint32_t size) const;
   // False: zeros, known without a look at them.
   bool has_run(uint32_t offset, uint32_t size) const;
   bool is_zero(uint32_t offset, uint32_t size) const;

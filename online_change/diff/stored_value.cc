@@ -1,5 +1,7 @@
 #include "online_change/diff/stored_value.h"
 
+#include "ir/types/value_text.h"
+
 #include <cstring>
 
 namespace online_change {
@@ -23,6 +25,20 @@ bool is_string(const ir::Image& image, ir::TypeId type) {
 
 uint32_t unit_of(const ir::Image& image, ir::TypeId type) {
   return image.types[type].kind == Kind::kWstring ? 2 : 1;
+}
+
+std::string stored_text(const ir::Image& image, ir::TypeId type, const uint8_t* at) {
+  if (!is_string(image, type)) {
+    return ir::scalar_text(image.types, type, load(image, type, at));
+  }
+  uint32_t unit = unit_of(image, type);
+  uint32_t size = image.layouts[type].size;
+  uint32_t length = 0;
+  for (; length + unit <= size; length += unit) {
+    if (at[length] == 0 && (unit == 1 || at[length + 1] == 0)) break;
+  }
+  std::string_view units(reinterpret_cast<const char*>(at), length);
+  return unit == 2 ? ir::wstring_text(units) : ir::string_text(units);
 }
 
 Converted convert_stored(const ir::Image& old_image, ir::TypeId old_type, const uint8_t* source,

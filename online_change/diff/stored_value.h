@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "ir/bytecode/image.h"
 #include "online_change/diff/value_conversion.h"
@@ -14,6 +15,9 @@ bool is_string(const ir::Image& image, ir::TypeId type);
 uint32_t unit_of(const ir::Image& image, ir::TypeId type);
 // As in ConstValue: sign-extended, REAL as its 32 bits.
 uint64_t load(const ir::Image& image, ir::TypeId type, const uint8_t* at);
+
+// As people read it.
+std::string stored_text(const ir::Image& image, ir::TypeId type, const uint8_t* at);
 
 // Fills `out`, but where the value has no counterpart (Converted::initialise).
 Converted convert_stored(const ir::Image& old_image, ir::TypeId old_type, const uint8_t* source,

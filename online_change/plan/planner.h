@@ -62,6 +62,7 @@ class Planner {
   void name_old_place(const Carried& instance, FateRow& row) const;
   void rename_row(const Carried& instance, bool whole);
   std::string rename_note(const Carried& instance, const DiffOp& op) const;
+  std::string initial_note(const Carried& instance, const DiffOp& op, std::string_view path) const;
   uint32_t note_row(const Carried& instance, const DiffOp& op);
   std::string rename_hint(uint32_t new_id);
   std::string program_hint(ir::TypeId type) const;

@@ -3,12 +3,13 @@
 #include <map>
 
 #include "online_change/diff/diff_ops.h"
+#include "online_change/plan/initial_note.h"
 #include "online_change/plan/planner.h"
 
 namespace online_change {
 namespace {
 
-// Told beside what else becomes of a variable: the new one will show after a cold start only.
+// Of what is converted: its values are of two types.
 constexpr const char* kInitialChanged = "; initial value changed, the live value stays";
 
 std::string join_path(const std::string& instance, const std::string& relative) {
@@ -101,6 +102,14 @@ void Planner::rename_row(const Carried& instance, bool whole) {
   });
 }
 
+// Told beside what else becomes of a variable: the new one will show after a cold start only.
+std::string Planner::initial_note(const Carried& instance, const DiffOp& op,
+                                  std::string_view path) const {
+  return online_change::initial_note(old_areas_, old_data_,
+                                     {instance.from + op.from, op.from_stride}, new_data_,
+                                     {instance.to + op.to, op.to_stride}, op.size, op.count, path);
+}
+
 // Another initial value, or another name.
 uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
   const std::string renamed = rename_note(instance, op);
@@ -112,7 +121,7 @@ uint32_t Planner::note_row(const Carried& instance, const DiffOp& op) {
     row.path = join_path(new_.instance_path(instance.new_id), row.path);
     name_old_place(instance, row);
     row.reason = renamed;
-    if (stays) row.reason += kInitialChanged + (renamed.empty() ? 2 : 0);
+    if (stays) row.reason += initial_note(instance, op, row.path).substr(renamed.empty() ? 2 : 0);
     return row;
   });
 }
@@ -136,7 +145,7 @@ uint32_t Planner::moved_row(const Carried& instance, const DiffOp& op) {
       row.new_type = member.new_type;
       row.reason = renamed.empty() ? "" : renamed + ", ";
       row.reason += instance.moved() ? "area moved" : "moved inside its area";
-      if (changed) row.reason += kInitialChanged;
+      if (changed) row.reason += initial_note(instance, op, row.path);
       return row;
     }
     row.old_type = old_.types.text(old_.instances[instance.old_id].type);
