@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::string_view kBegin = "; initial value ";
 constexpr std::string_view kEnd = ", the live value stays";
-constexpr size_t kMostText = 40;  // bytes of a value
+constexpr size_t kLongestShown = 40;  // bytes of a value
 
 // "1.0 -> 1.5"; "" for what has no text, or a long one.
 std::string both_values(const ir::Image& image, Node leaf, const InitialData& old_data,
@@ -19,8 +19,8 @@ std::string both_values(const ir::Image& image, Node leaf, const InitialData& ol
   const std::string before = stored_text(image, leaf.type, bytes.data());
   new_data.read(to, bytes);
   const std::string after = stored_text(image, leaf.type, bytes.data());
-  return before.size() > kMostText || after.size() > kMostText ? std::string()
-                                                               : before + " -> " + after;
+  return before.size() > kLongestShown || after.size() > kLongestShown ? std::string()
+                                                                       : before + " -> " + after;
 }
 
 }  // namespace
