@@ -36,6 +36,7 @@ done
 serve fast --virtual-time fast1.st
 expect 7 stvm change fast2.st --strategy standby --yes --dir fast
 said 'R0304.*task `t` leaves 120000 of 120000 ns'
+tr -s ' \n' ' ' <err | grep -q 'an edit that is undone, `stvm status --reset-times`' || fail "the way out"
 said 'by standby 21[0-9]{5} of its [0-9]+ bytes of data are found to have been written'
 said 'in place .--strategy in-place. the switch is expected to take'
 expect 0 stvm change fast2.st --yes --dir fast
