@@ -9,7 +9,7 @@ endif()
 
 # These have the same names in each source of the folder, options of their own, or texts that most
 # programs do without.
-set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/diagnostics_pages|/vm/exec/(handlers|(handle|fused)_)")
+set(STC_ALONE "/tools/st[a-z]+/main|/small_blocks|/diagnostics_pages|/vm/exec/(handle|fused)_")
 
 # stc_batches(RESULT source...): the sources of one folder, or units that include them. With
 # STC_BATCH_FOLDER they are of that folder and those in it, and share units. What is compiled small,

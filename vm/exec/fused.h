@@ -43,11 +43,7 @@ void fused(STC_HANDLER_ARGS) {
 
 namespace {
 
-using operand::c, operand::f, operand::g, operand::s;
-using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
-using O = ir::Opcode;
-template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
-using S = Step<op, A, B, C>;
+using namespace fusion_rows;
 
 #ifndef STC_ROW_0
 #define STC_ROW_0(...)

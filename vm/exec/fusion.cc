@@ -5,14 +5,13 @@
 namespace vm {
 namespace {
 
-using operand::c, operand::f, operand::g, operand::s;
-using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
-
 template <class Bases>
 constexpr ir::Base base_of(const Bases& written, uint8_t source) {
-  return static_cast<ir::Base>(source < v0 ? source : written[source - v0]);
+  return static_cast<ir::Base>(source < operand::v0 ? source : written[source - operand::v0]);
 }
-constexpr uint32_t source_bits(uint8_t source) { return source < v0 ? 0 : source - v0 + 1u; }
+constexpr uint32_t source_bits(uint8_t source) {
+  return source < operand::v0 ? 0 : source - operand::v0 + 1u;
+}
 
 template <class... S>
 constexpr Fusion fusion_of() {
@@ -29,10 +28,6 @@ constexpr Fusion fusion_of() {
   return out;
 }
 
-using O = ir::Opcode;
-template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
-using S = Step<op, A, B, C>;
-
 constexpr size_t kFusionCount = 0
 #define FUSION(...) +1
 #include "vm/exec/fusions.def"
@@ -47,6 +42,7 @@ bool comes_before(const Fusion& x, const Fusion& y) {
 }
 
 constexpr std::array<Fusion, kFusionCount> all_fusions() {
+  using namespace fusion_rows;
   return {{
 #define FUSION(part, ...) fusion_of<__VA_ARGS__>(),
 #include "vm/exec/fusions.def"

@@ -28,6 +28,14 @@ struct Step {
   static constexpr uint8_t kC = C;
 };
 
+// The words of fusions.def, for who reads its rows.
+namespace fusion_rows {
+using namespace operand;
+using O = ir::Opcode;
+template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
+using S = Step<op, A, B, C>;
+}  // namespace fusion_rows
+
 inline constexpr size_t kMaxSteps = 8;
 
 // The bases of what the steps S write, also of those that update the result of an earlier one.

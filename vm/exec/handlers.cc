@@ -20,12 +20,6 @@ void take_truth_tables(STC_HANDLER_ARGS);
 
 namespace {
 
-using operand::c, operand::f, operand::g, operand::s;
-using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
-using O = ir::Opcode;
-template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
-using S = Step<op, A, B, C>;
-
 template <ir::Opcode op, uint32_t... i>
 constexpr void fill_opcode(Handler* table, std::integer_sequence<uint32_t, i...>) {
   ((table[kFirstHandler[static_cast<uint32_t>(op)] + i] =
@@ -34,6 +28,7 @@ constexpr void fill_opcode(Handler* table, std::integer_sequence<uint32_t, i...>
 }
 
 constexpr HandlerTable all_handlers() {
+  using namespace fusion_rows;
   HandlerTable table{};
   table.of[kResumeHandler] = &resume_native;
   table.of[kStopHandler] = &stop_helper;
