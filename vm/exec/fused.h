@@ -41,9 +41,8 @@ void fused(STC_HANDLER_ARGS) {
   STC_GO(m.pc, m.frame, m.self);
 }
 
+namespace fusion_rows {
 namespace {
-
-using namespace fusion_rows;
 
 #ifndef STC_ROW_0
 #define STC_ROW_0(...)
@@ -66,5 +65,6 @@ using namespace fusion_rows;
     nullptr};
 
 }  // namespace
+}  // namespace fusion_rows
 
 }  // namespace vm

@@ -36,13 +36,11 @@ constexpr size_t kFusionCount = 0
 static_assert(kFirstFused + kFusionCount <= kHandlerLimit,
               "the table of handlers has no more room");
 
-bool comes_before(const Fusion& x, const Fusion& y) {
-  return std::lexicographical_compare(x.keys.begin(), x.keys.begin() + x.length, y.keys.begin(),
-                                      y.keys.begin() + y.length);
-}
+}  // namespace
+
+namespace fusion_rows {
 
 constexpr std::array<Fusion, kFusionCount> all_fusions() {
-  using namespace fusion_rows;
   return {{
 #define FUSION(part, ...) fusion_of<__VA_ARGS__>(),
 #include "vm/exec/fusions.def"
@@ -50,9 +48,18 @@ constexpr std::array<Fusion, kFusionCount> all_fusions() {
   }};
 }
 
+}  // namespace fusion_rows
+
+namespace {
+
+bool comes_before(const Fusion& x, const Fusion& y) {
+  return std::lexicographical_compare(x.keys.begin(), x.keys.begin() + x.length, y.keys.begin(),
+                                      y.keys.begin() + y.length);
+}
+
 constexpr size_t count_steps() {
   size_t steps = 0;
-  for (const Fusion& row : all_fusions()) steps += row.length;
+  for (const Fusion& row : fusion_rows::all_fusions()) steps += row.length;
   return steps;
 }
 
@@ -65,7 +72,7 @@ constexpr PackedFusions packed_fusions() {
   PackedFusions out;
   size_t row = 0;
   size_t step = 0;
-  for (const Fusion& fusion : all_fusions()) {
+  for (const Fusion& fusion : fusion_rows::all_fusions()) {
     out.lengths[row++] = fusion.length;
     for (size_t k = 0; k < fusion.length; ++k) out.keys[step++] = fusion.keys[k];
   }

@@ -30,7 +30,8 @@ struct Step {
 
 // The words of fusions.def, for who reads its rows.
 namespace fusion_rows {
-using namespace operand;
+using operand::c, operand::f, operand::g, operand::s;
+using operand::v0, operand::v1, operand::v2, operand::v3, operand::v4, operand::v5, operand::v6;
 using O = ir::Opcode;
 template <O op, uint8_t A = f, uint8_t B = f, uint8_t C = f>
 using S = Step<op, A, B, C>;

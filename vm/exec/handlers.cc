@@ -27,8 +27,22 @@ constexpr void fill_opcode(Handler* table, std::integer_sequence<uint32_t, i...>
    ...);
 }
 
+}  // namespace
+
+namespace fusion_rows {
+
+constexpr void fill([[maybe_unused]] HandlerTable& table) {
+  [[maybe_unused]] uint32_t next = kFirstFused;
+#define FUSION(part, ...) table.of[next++] = &fused<__VA_ARGS__>;
+#include "vm/exec/fusions.def"
+#undef FUSION
+}
+
+}  // namespace fusion_rows
+
+namespace {
+
 constexpr HandlerTable all_handlers() {
-  using namespace fusion_rows;
   HandlerTable table{};
   table.of[kResumeHandler] = &resume_native;
   table.of[kStopHandler] = &stop_helper;
@@ -41,10 +55,7 @@ constexpr HandlerTable all_handlers() {
                     uint32_t, kBaseCounts[static_cast<uint32_t>(ir::Opcode::name)].product()>());
 #include "ir/bytecode/opcodes.def"
 #undef OP
-  [[maybe_unused]] uint32_t next = kFirstFused;
-#define FUSION(part, ...) table.of[next++] = &fused<__VA_ARGS__>;
-#include "vm/exec/fusions.def"
-#undef FUSION
+  fusion_rows::fill(table);
   return table;
 }
 
