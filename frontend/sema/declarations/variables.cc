@@ -74,6 +74,12 @@ void Variables::resolve_variable(VarId id) {
     variable.type = {};
     return;
   }
+  if (variable.pou != kNoPou &&
+      sema_.declared.pous[variable.pou].decl->kind == PouKind::kInterface) {
+    error(DiagnosticCode::kSectionNotAllowed, variable.name.span,
+          "an interface has no variables, such as " + quoted(variable.name),
+          "make it a PROPERTY, or declare it in the blocks that implement the interface");
+  }
   if (variable.takes_any) {
     if (auto record = ask<Types>().find_type("AnyType")) variable.type = record->type;
     return;

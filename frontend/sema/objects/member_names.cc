@@ -71,6 +71,7 @@ Note Objects::infer_member(const Expr& expr, uint32_t owner, Note note) {
   const bool own = is_own(sema_.tree[expr.operand]);
   const PouInfo& block = sema_.declared.pous[owner];
   if (VarId id = find_variable(owner, expr.name.text); id.valid()) {
+    if (block.decl->kind == PouKind::kInterface) return {};  // said where it is declared
     const Variable& variable = resolve(id);
     if (own) {
       check_access(variable.access, variable.pou, expr.name);
